@@ -155,7 +155,8 @@ def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[An
     argument = _SECOND_ARGUMENT[kind]
     if second is None:
         if kind == "lagrangian" and not any(isinstance(each, sp.Symbol) for each in first):
-            return tuple(each.diff(time._sympy_()) for each in first)
+            # What each.diff(t) gives, which is slow to find that there is nothing to carry out.
+            return tuple(sp.Derivative(each, time._sympy_(), evaluate=False) for each in first)
         what = "velocities of coordinates that are symbols" if kind == "lagrangian" else "momenta"
         raise InvalidInput(argument, f"expected the {what}, one for each of {list(first)}")
     listed = tuple(_listed(argument, second))

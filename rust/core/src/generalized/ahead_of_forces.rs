@@ -3,8 +3,8 @@
 //! The one idea: a method knows a force by what it does within a step, so one that is shorter than a step may be passed over
 //! unseen; where a step changes nothing of the motion, it is a small part of the run at most.
 
-use crate::numerics::element::Element;
-use crate::numerics::real::Mask;
+use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::real::{Mask, Real};
 use crate::ode::series::Jet;
 use crate::ode::system::Form;
 
@@ -16,35 +16,77 @@ pub(super) const LONGEST_FREE: f64 = 1.0 / 128.0;
 /// Terms of a series that tell of a force, if the first does not.
 const TERMS: usize = 3;
 
-/// The longest step up to `h` of a motion with this series, in its unit of time: `longest_free` where nothing is felt.
-pub(super) fn longest_step<S: Element>(form: Form, jet: &Jet<S>, h: S, longest_free: S) -> S {
-    // No step leads beyond the run.
-    let step = h.min(longest_free * S::splat(1.0 / LONGEST_FREE));
-    let mut felt = h.less_equal(longest_free);
-    for terms in [1, TERMS] {
-        for index in 0..jet.len {
-            if felt.all() {
-                return h;
-            }
-            felt = felt.or(is_felt(form, jet, index, step, terms));
-        }
-    }
-    S::select(felt, h, h.min(longest_free))
+/// The longest step up to `h` of a motion with this series: `longest_free` where nothing is felt.
+#[derive(Debug)]
+pub(super) struct LongestStep<'a, S> {
+    pub(super) form: Form,
+    pub(super) jet: &'a Jet<S>,
+    pub(super) h: &'a S,
+    pub(super) longest_free: &'a S,
 }
 
-/// Whether so many terms change a number in a step.
-///
-/// Of equations of the first order, rates that change do so with the square of the step, and so do the numbers.
-fn is_felt<S: Element>(form: Form, jet: &Jet<S>, index: usize, step: S, terms: usize) -> S::Mask {
-    let term = |blocks: &[S], order: usize| blocks[order * jet.len + index].abs();
-    let change = |blocks: &[S], from: usize| {
-        (from..from + terms).rev().fold(S::zero(), |change, order| (change + term(blocks, order)) * step)
-    };
-    match form {
-        Form::FirstOrder(_) => {
-            let size = term(&jet.q, 0).max(term(&jet.q, 1) * step);
-            (S::splat(FREE * FREE) * size).less(change(&jet.q, 2) * step)
+impl<S: Element> Pass<S> for LongestStep<'_, S> {
+    /// In the unit of time of the series.
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let Jet { q, v, len, unit, .. } = self.jet;
+        let (unit, second_order) = (V::load(*unit), matches!(self.form, Form::SecondOrder(_)));
+        let (h, longest_free) = (V::load(*self.h) / unit, V::load(*self.longest_free) / unit);
+        let blocks = V::view(if second_order { v } else { q });
+        // No step leads beyond the run.
+        let step = h.min(longest_free * V::splat(1.0 / LONGEST_FREE));
+        let mut felt = h.less_equal(longest_free);
+        for terms in [1, TERMS] {
+            for index in 0..*len {
+                if felt.all() {
+                    return h.store();
+                }
+                let of = Terms { blocks, len: *len, index, step };
+                felt = felt.or(if second_order { of.change_velocity(terms) } else { of.change(terms) });
+            }
         }
-        Form::SecondOrder(_) => (S::splat(FREE) * term(&jet.v, 0)).less(change(&jet.v, 1)),
+        V::select(felt, h, h.min(longest_free)).store()
+    }
+}
+
+/// The terms of one number's series over a step.
+#[derive(Clone, Copy)]
+struct Terms<'a, V> {
+    blocks: &'a [V],
+    len: usize,
+    index: usize,
+    step: V,
+}
+
+impl<V: Real> Terms<'_, V> {
+    #[inline(always)]
+    fn size(&self, order: usize) -> V {
+        self.blocks[order * self.len + self.index].abs()
+    }
+
+    /// What so many terms from an order on come to.
+    #[inline(always)]
+    fn sum(&self, from: usize, terms: usize) -> V {
+        let (mut sum, mut order) = (V::zero(), from + terms);
+        while order > from {
+            order -= 1;
+            sum = (sum + self.size(order)) * self.step;
+        }
+        sum
+    }
+
+    /// Whether so many terms change a velocity.
+    #[inline(always)]
+    fn change_velocity(&self, terms: usize) -> V::Mask {
+        (V::splat(FREE) * self.size(0)).less(self.sum(1, terms))
+    }
+
+    /// Whether so many terms change a number of the first order: rates that change do so with the square of the step, and so
+    /// do the numbers.
+    #[inline(always)]
+    fn change(&self, terms: usize) -> V::Mask {
+        let size = self.size(0).max(self.size(1) * self.step);
+        (V::splat(FREE * FREE) * size).less(self.sum(2, terms) * self.step)
     }
 }

@@ -78,6 +78,7 @@ pub struct Model {
     pub switches: Vec<Arc<Code>>,
     /// What it divides by, if that may change its sign.
     pub divisors: Option<Divisors>,
+    needs: Needs,
 }
 
 impl Model {
@@ -115,7 +116,9 @@ impl Model {
             projection: None,
             switches: vec![],
             divisors: None,
+            needs: Needs::default(),
         };
+        model.needs = model.what_is_looked_at();
         model.projection = Projection::new(&mut model)?;
         model.switches = sticking::switches(&mut model)?;
         model.divisors = Divisors::of(&model)?;
@@ -203,6 +206,10 @@ impl Model {
 
     /// What its equations look at.
     pub fn needs(&self) -> Needs {
+        self.needs
+    }
+
+    fn what_is_looked_at(&self) -> Needs {
         use crate::expressions::Node;
         let graph = &self.source.graph;
         let n = self.source.coordinates as u32;

@@ -1,6 +1,6 @@
 //! A model at work as a [`System`]: what every method of the registry takes.
 
-use super::ahead_of_forces::{LONGEST_FREE, longest_step};
+use super::ahead_of_forces::{LONGEST_FREE, LongestStep};
 use super::model::Model;
 use super::run::{Integrator, Request};
 use crate::error::{Error, Result};
@@ -128,7 +128,7 @@ impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
     }
 
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
-        let h = longest_step(self.form, jet, h / jet.unit, self.longest_free / jet.unit);
+        let h = S::pass(LongestStep { form: self.form, jet, h: &h, longest_free: &self.longest_free });
         let sharp = self.series.as_ref().filter(|series| series.may_turn_sharply());
         Some(sharp.map_or(h, |series| series.smooth_until(jet.order, h)) * jet.unit)
     }

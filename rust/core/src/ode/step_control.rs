@@ -96,14 +96,14 @@ impl<S: Real> Clock<S> {
         self.end = S::select(lanes, end, self.end);
     }
 
-    /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
-    #[inline(always)]
     /// Makes the next step at most so long.
     pub(super) fn shorten(&mut self, longest: S) {
         let shorter = S::select(self.h.less(S::zero()), -longest, longest);
         self.h = S::select(longest.less(self.h.abs()), shorter, self.h);
     }
 
+    /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
+    #[inline(always)]
     fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
         let remaining = (self.end - self.elapsed) - self.error;
         // A last step a little longer than planned beats a last step of nothing.

@@ -7,7 +7,7 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, LargestRoot, Missed, OwnMissed, OwnSizes, Sum, nest};
+use super::passes::series::{Choice, LargestRoot, Missed, OwnInverse, OwnMissed, Sum, nest};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -96,14 +96,8 @@ impl<S: Controlled> TaylorStep<S> {
             return S::pass(LargestRoot { squares, orders: pair });
         }
         let Jet { q, len, .. } = &self.jet;
-        let (mut step, mut inverse) = (S::one(), S::zero());
-        for _ in 0..=REFINEMENTS {
-            let sizes = OwnSizes { blocks: q, len: *len, orders: pair, step: &step, tolerance: &norm.rtol };
-            inverse = S::pass(LargestRoot { squares: S::pass(sizes), orders: pair });
-            let found = S::zero().less(inverse).and(inverse.less(S::splat(HUGE)));
-            step = S::select(found, S::one() / inverse, step);
-        }
-        inverse
+        let (tolerance, times) = (&norm.rtol, REFINEMENTS + 1);
+        S::pass(OwnInverse { blocks: q, len: *len, orders: pair, tolerance, times })
     }
 
     /// The squared scaled sizes of the coefficients of two orders.
@@ -120,15 +114,19 @@ impl<S: Controlled> TaylorStep<S> {
 
     /// One over the longest step that the coefficients allow, in their unit of time.
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
-        let mut inverse = S::zero();
         let mut highest = self.jet.order;
+        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
         // numbers are measured by how far they go, one that ends with half of all coefficients.
         let last = if norm.blocks.is_empty() { self.jet.order / 2 } else { 3 };
-        while highest > last && inverse.less_equal(S::zero()).and(running).any() {
-            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
-            inverse = S::select(inverse.less_equal(S::zero()), found, inverse);
+        while highest - 2 > last {
             highest -= 2;
+            let untold = inverse.less_equal(S::zero());
+            if !untold.and(running).any() {
+                break;
+            }
+            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+            inverse = S::select(untold, found, inverse);
         }
         inverse
     }

@@ -6,7 +6,7 @@
 
 use super::Table;
 use super::pace::FADING;
-use super::step::{AGAIN, Changes, LEAST_SCALE, MOST_ITERATIONS, WILD};
+use super::step::{AGAIN, Changes, LEAST_SCALE, MOST_ITERATIONS, WILD, limit};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -57,6 +57,11 @@ impl Columns {
             tried: row.clone(),
             least: row,
         }
+    }
+
+    /// The most that anything is measured by, inverted, where rounding is not to count, of one trajectory.
+    pub(super) fn limit(&self, lane: usize) -> f64 {
+        limit(self.scales.iter().map(|scale| scale.0[lane]))
     }
 
     /// Remembers how large numbers were in the steps that were tried, as for one trajectory.
@@ -171,6 +176,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
     let h2 = h * h;
     let mut settled = Settled { converged: Bits::splat(false), evaluations: [MOST_ITERATIONS; WIDTH] };
     let mut changes = [Changes::default(); WIDTH];
+    let mut limit = Lanes::splat(f64::INFINITY);
     let mut active = *running;
     for iteration in 0..MOST_ITERATIONS {
         let mut most = V::zero();
@@ -185,7 +191,8 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
                 let sum = combined!(count, row, j => V::splat(table.a[j].0[k]));
                 let number = sum.multiply_add(h, V::load(rest[from])) + y_from;
                 let before = V::load(columns.numbers[i][k]);
-                change = change.max((number - before).abs() * V::load(columns.scales[i]));
+                let scale = V::load(columns.scales[i]).min(V::load(limit));
+                change = change.max((number - before).abs() * scale);
                 columns.numbers[i][k] = number.store();
                 if second_order {
                     let left_out = passed_rest.multiply_add(y_from, V::load(rest[i]));
@@ -199,7 +206,9 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         let most = most.store();
         let open = active;
         for lane in (0..WIDTH).filter(|&lane| open.lane(lane)) {
-            if let Some(converged) = changes[lane].judged(iteration, most.0[lane]) {
+            let judged = changes[lane].judged(iteration, most.0[lane], || columns.limit(lane));
+            limit.0[lane] = changes[lane].limit;
+            if let Some(converged) = judged {
                 let lane_alone = Bits(1 << lane);
                 settled.evaluations[lane] = iteration;
                 active = active.and(lane_alone.not());
@@ -299,29 +308,33 @@ fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<Lanes>) {
     let (y, rest) = state.all();
     let (next, next_rest) = next.all_mut();
     let h = V::load(*h);
-    let mut put = |index: usize, change: V| {
-        let y = V::load(y[index]);
-        let sum = y + change;
-        let moved = sum - y;
-        next_rest[index] = ((y - (sum - moved)) + (change - moved)).store();
-        next[index] = sum.store();
-    };
+    // A closure would be compiled without the tier's instructions.
+    macro_rules! put {
+        ($index:expr, $change:expr) => {{
+            let (index, change): (usize, V) = ($index, $change);
+            let y = V::load(y[index]);
+            let sum = y + change;
+            let moved = sum - y;
+            next_rest[index] = ((y - (sum - moved)) + (change - moved)).store();
+            next[index] = sum.store();
+        }};
+    }
     for i in 0..evaluated {
         let row = &columns.rates[i];
         match form {
             Form::FirstOrder(_) => {
-                put(i, weighted::<V>(&table.b, row, last).multiply_add(h, V::load(rest[i])))
+                put!(i, weighted::<V>(&table.b, row, last).multiply_add(h, V::load(rest[i])))
             }
             Form::SecondOrder(_) => {
                 let v = evaluated + i;
                 let (y, rest_v) = (V::load(y[v]), V::load(rest[v]));
-                put(v, weighted::<V>(&table.b, row, last).multiply_add(h, rest_v));
+                put!(v, weighted::<V>(&table.b, row, last).multiply_add(h, rest_v));
                 let drift = y * h;
                 let lost = y.multiply_add(h, -drift);
                 let rest_q = rest_v.multiply_add(h, V::load(rest[i]) + lost);
                 let (h2, moved) = (h * h, weighted::<V>(&table.b2, row, last));
                 let small = moved.multiply_add(h.multiply_add(h, -h2), rest_q);
-                put(i, drift + moved.multiply_add(h2, small));
+                put!(i, drift + moved.multiply_add(h2, small));
             }
         }
     }

@@ -29,6 +29,9 @@ pub(super) const AGAIN: u32 = 3;
 const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
 pub(super) const LEAST_SCALE: f64 = 1e-8;
+/// Nor below this where no more is to be told than rounding: rates that are found together, as by a solution of linear
+/// equations, are rounded by the largest of them, and what they give to what hardly moves beside it is noise.
+const ROUNDED_SCALE: f64 = 1e-4;
 
 /// What the stages of a step hold.
 #[derive(Clone, Debug)]
@@ -63,6 +66,11 @@ impl Stages {
         }
     }
 
+    /// The most that anything is measured by, inverted, where rounding is not to count.
+    pub(super) fn limit(&self) -> f64 {
+        limit(self.scales.iter().copied())
+    }
+
     /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep
     /// wall, and beside those anything has converged.
     fn began_wildly(&self, y: &[f64], h: f64, fading: f64) -> bool {
@@ -82,6 +90,12 @@ impl Stages {
     }
 }
 
+/// The most that anything is measured by beside these, inverted, where rounding is not to count.
+#[inline(always)]
+pub(super) fn limit(scales: impl Iterator<Item = f64>) -> f64 {
+    scales.fold(f64::INFINITY, Real::min) * (1.0 / ROUNDED_SCALE)
+}
+
 /// What came of an iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Iterated {
@@ -95,18 +109,26 @@ pub(super) struct Changes {
     last: f64,
     least: f64,
     in_vain: u32,
+    /// The most that a change is measured by, inverted.
+    pub(super) limit: f64,
 }
 
 impl Default for Changes {
     fn default() -> Self {
-        Self { last: f64::INFINITY, least: f64::INFINITY, in_vain: 0 }
+        Self { last: f64::INFINITY, least: f64::INFINITY, in_vain: 0, limit: f64::INFINITY }
     }
 }
 
 impl Changes {
-    /// Whether the stages have converged, or never will; nothing while that is open.
+    /// Whether the stages have converged, or never will; nothing while that is open. Where changes no longer fall that may be
+    /// rounding, they are measured by the `limit` from there on.
     #[inline(always)]
-    pub(super) fn judged(&mut self, iteration: u32, change: f64) -> Option<bool> {
+    pub(super) fn judged(
+        &mut self,
+        iteration: u32,
+        change: f64,
+        limit: impl FnOnce() -> f64,
+    ) -> Option<bool> {
         // The first change is from the numbers of another step, and tells nothing.
         if iteration == 0 {
             return None;
@@ -118,6 +140,10 @@ impl Changes {
         let for_long = self.in_vain == NO_LONGER_FALLING;
         if change == 0.0 || (stands && change < ROUND_OFF) || (for_long && change < STAGNATION) {
             return Some(true);
+        }
+        if for_long && change < STAGNATION * (ROUNDED_SCALE / LEAST_SCALE) && self.limit == f64::INFINITY {
+            *self = Self { limit: limit(), ..Self::default() };
+            return None;
         }
         (!change.is_finite() || for_long).then_some(false)
     }
@@ -148,18 +174,13 @@ pub(super) fn combined<V: Vector8>(weights: &[Lanes; WIDTH], values: &Lanes) -> 
     even + odd
 }
 
-/// The largest lane; a NaN counts as infinite.
+/// The largest of lanes that are none below zero; a NaN counts as infinite. Their bits are in the order of the numbers, and those
+/// of a NaN beyond all.
 #[inline(always)]
 pub(super) fn largest(lanes: Lanes) -> f64 {
-    lanes.0.iter().fold(0.0, |most, &x| {
-        if x <= most {
-            most
-        } else if x.is_nan() {
-            f64::INFINITY
-        } else {
-            x
-        }
-    })
+    let [a, b, c, d, e, f, g, h] = lanes.0.map(f64::to_bits);
+    let largest = f64::from_bits(a.max(e).max(c.max(g)).max(b.max(f).max(d.max(h))));
+    if largest.is_nan() { f64::INFINITY } else { largest }
 }
 
 /// How large a number is, or was before, and how far it goes in the step.
@@ -207,7 +228,8 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             let rates = &stages.rates[i];
             let number =
                 combined::<V>(&table.a, rates).multiply_add(h, V::splat(rest[from])) + V::splat(y[from]);
-            change = change.max((number - V::load(stages.numbers[i])).abs() * V::splat(stages.scales[i]));
+            let scale = Real::min(stages.scales[i], changes.limit);
+            change = change.max((number - V::load(stages.numbers[i])).abs() * V::splat(scale));
             stages.numbers[i] = number.store();
             registers[from] = number.store();
             if second_order {
@@ -218,7 +240,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             }
         }
         let change = largest(change.store());
-        if let Some(converged) = changes.judged(iteration, change) {
+        if let Some(converged) = changes.judged(iteration, change, || stages.limit()) {
             return Iterated { converged, evaluations: iteration };
         }
         execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
@@ -248,6 +270,14 @@ pub(super) fn found(work: &mut Work<'_>) -> Iterated {
     all
 }
 
+/// The weighted sum of the stages.
+#[inline(always)]
+fn weighted<V: Vector8>(weights: &[Lanes; 2], rates: &Lanes) -> f64 {
+    let rates = V::load(*rates);
+    let low = V::load(weights[1]) * rates;
+    V::load(weights[0]).multiply_add(rates, low).store().horizontal_sum()
+}
+
 /// Writes the state at the end of the step.
 #[inline(always)]
 fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
@@ -255,31 +285,30 @@ fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
     let evaluated = form.evaluated();
     let (y, rest) = state.all();
     let (next, next_rest) = next.all_mut();
-    let mut put = |index: usize, change: f64| {
-        let sum = y[index] + change;
-        let moved = sum - y[index];
-        next_rest[index] = (y[index] - (sum - moved)) + (change - moved);
-        next[index] = sum;
-    };
-    let weighted = |weights: &[Lanes; 2], rates: &Lanes| {
-        let rates = V::load(*rates);
-        let low = V::load(weights[1]) * rates;
-        V::load(weights[0]).multiply_add(rates, low).store().horizontal_sum()
-    };
+    // A closure would be compiled without the tier's instructions.
+    macro_rules! put {
+        ($index:expr, $change:expr) => {{
+            let (index, change) = ($index, $change);
+            let sum = y[index] + change;
+            let moved = sum - y[index];
+            next_rest[index] = (y[index] - (sum - moved)) + (change - moved);
+            next[index] = sum;
+        }};
+    }
     for i in 0..evaluated {
         let rates = &stages.rates[i];
         match form {
-            Form::FirstOrder(_) => put(i, weighted(&table.b, rates).mul_add(*h, rest[i])),
+            Form::FirstOrder(_) => put!(i, weighted::<V>(&table.b, rates).mul_add(*h, rest[i])),
             Form::SecondOrder(_) => {
                 let v = evaluated + i;
-                put(v, weighted(&table.b, rates).mul_add(*h, rest[v]));
+                put!(v, weighted::<V>(&table.b, rates).mul_add(*h, rest[v]));
                 // h v is kept whole: rounded, it would err at every step to the same side of a slow motion.
                 let drift = y[v] * *h;
                 let lost = y[v].mul_add(*h, -drift);
                 // So is h², of which the same holds.
-                let (h2, moved) = (*h * *h, weighted(&table.b2, rates));
+                let (h2, moved) = (*h * *h, weighted::<V>(&table.b2, rates));
                 let small = moved.mul_add(h.mul_add(*h, -h2), rest[v].mul_add(*h, rest[i] + lost));
-                put(i, drift + moved.mul_add(h2, small));
+                put!(i, drift + moved.mul_add(h2, small));
             }
         }
     }

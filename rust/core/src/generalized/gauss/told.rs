@@ -74,9 +74,11 @@ fn missed_body<V: Vector8>(
     h: Lanes,
 ) -> Lanes {
     let mut most = V::zero();
+    let limit = Lanes(core::array::from_fn(|lane| columns.limit(lane)));
     for ((row, &found), &scale) in columns.rates.iter().zip(found).zip(&columns.scales) {
         let led = combined!(stages, row, j => V::load(weights[j]));
-        most = larger((V::load(found) - led).abs() * V::load(h).abs() * V::load(scale), most);
+        let scale = V::load(scale).min(V::load(limit));
+        most = larger((V::load(found) - led).abs() * V::load(h).abs() * scale, most);
     }
     most.store()
 }

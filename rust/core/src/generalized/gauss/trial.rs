@@ -12,6 +12,7 @@ use super::{Method, Table};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::real::Real;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
@@ -140,10 +141,9 @@ impl GaussStep {
         let mut most = 0.0;
         for (rates, scale) in self.stages.rates.iter().zip(&self.stages.scales) {
             let beside = if second_order { 0.0 } else { rates.0[0] };
-            for rate in &rates.0[..self.table.stages] {
-                let felt = (rate - beside).abs() * h.abs() * scale;
-                most = if felt <= most { most } else { felt };
-            }
+            let change = |k: usize| if k < self.table.stages { (rates.0[k] - beside).abs() } else { 0.0 };
+            let felt = largest(Lanes(core::array::from_fn(change))) * h.abs() * scale;
+            most = if felt <= most { most } else { felt };
         }
         if second_order { most } else { most.sqrt() }
     }
@@ -176,8 +176,10 @@ impl GaussStep {
         self.machine.run(Lanes([t; WIDTH]));
         self.evaluations += 1;
         let mut most = 0.0;
+        let limit = self.stages.limit();
+        let scale = |stages: &Stages, i: usize| Real::min(stages.scales[i], limit);
         for (i, led) in self.led.iter().enumerate() {
-            let missed = (self.machine.output(i).0[0] - led.0[0]).abs() * h.abs() * self.stages.scales[i];
+            let missed = (self.machine.output(i).0[0] - led.0[0]).abs() * h.abs() * scale(&self.stages, i);
             most = if missed <= most { most } else { missed };
         }
         if self.pace.kept > 0 {
@@ -185,7 +187,7 @@ impl GaussStep {
         }
         led(&self.ending.first, &self.stages.rates, &mut self.led);
         for (i, (led, begin)) in self.led.iter().zip(&self.begin).enumerate() {
-            let missed = (begin - led.0[0]).abs() * h.abs() * self.stages.scales[i];
+            let missed = (begin - led.0[0]).abs() * h.abs() * scale(&self.stages, i);
             most = if missed <= most { most } else { missed };
         }
         most

@@ -6,6 +6,7 @@
 use super::errors::HUGE;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
 
 /// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
@@ -21,70 +22,88 @@ impl<S: Element> Pass<S> for LargestRoot<S> {
     type Output = S;
     #[inline(always)]
     fn run<V: View<S>>(self) -> S {
-        let mut largest = V::zero();
-        for which in 0..2 {
-            let square = V::load(self.squares[which]);
-            let root = square.rough_power(0.5 / self.orders[which] as f64);
-            let sound = square.less(V::splat(HUGE));
-            largest = largest.max(V::select(sound, root, V::splat(f64::INFINITY)));
-        }
-        largest.store()
+        let squares = [V::load(self.squares[0]), V::load(self.squares[1])];
+        largest_root(squares, self.orders).store()
     }
 }
 
-/// The largest squared ratio of the coefficients of two orders to how far their number goes in a step, times a tolerance.
+#[inline(always)]
+fn largest_root<V: InverseCube>(squares: [V; 2], orders: [usize; 2]) -> V {
+    let mut largest = V::zero();
+    for which in 0..2 {
+        let root = squares[which].rough_power(0.5 / orders[which] as f64);
+        let sound = squares[which].less(V::splat(HUGE));
+        largest = largest.max(V::select(sound, root, V::splat(f64::INFINITY)));
+    }
+    largest
+}
+
+/// One over the step that the coefficients of two orders allow, in their unit of time, where each number is measured by how
+/// far it goes in the step, times a tolerance: that is found from the step, which begins as one unit, and the step from that.
 #[derive(Debug)]
-pub(in crate::ode) struct OwnSizes<'a, S> {
+pub(in crate::ode) struct OwnInverse<'a, S> {
     /// Blocks of coefficients, from order 0 on.
     pub(in crate::ode) blocks: &'a [S],
     /// Numbers of a block.
     pub(in crate::ode) len: usize,
     /// The two orders.
     pub(in crate::ode) orders: [usize; 2],
-    /// The step.
-    pub(in crate::ode) step: &'a S,
     /// The tolerance.
     pub(in crate::ode) tolerance: &'a S,
+    /// How many times the step is found.
+    pub(in crate::ode) times: usize,
+}
+
+impl<S: Element> Pass<S> for OwnInverse<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let (blocks, tolerance) = (V::view(self.blocks), V::load(*self.tolerance));
+        let (mut step, mut inverse) = (V::one(), V::zero());
+        for _ in 0..self.times {
+            let squares = own_sizes(blocks, self.len, self.orders, step, tolerance);
+            inverse = largest_root(squares, self.orders);
+            let found = V::zero().less(inverse).and(inverse.less(V::splat(HUGE)));
+            step = V::select(found, V::one() / inverse, step);
+        }
+        inverse.store()
+    }
 }
 
 /// Orders that tell how far a number goes. They may all vanish, as of a body that a drive moves from rest: then the largest
 /// of those up to the ones that are measured tells, lest what is measured be infinite.
 const TELLING: usize = 3;
 
-impl<S: Element> Pass<S> for OwnSizes<'_, S> {
-    type Output = [S; 2];
-    #[inline(always)]
-    fn run<V: View<S>>(self) -> [S; 2] {
-        let (blocks, step) = (V::view(self.blocks), V::load(*self.step));
-        let tolerance = V::load(*self.tolerance);
-        let mut largest = [V::zero(); 2];
-        for number in 0..self.len {
-            let (mut size, mut power) = (V::zero(), V::one());
-            for order in 1..=TELLING {
-                power = power * step;
-                size = (blocks[order * self.len + number] * power).abs().max(size);
-            }
-            let told = V::zero().less(size);
-            if !told.all() {
-                let mut later = V::zero();
-                for order in TELLING + 1..=self.orders[1] {
-                    power = power * step;
-                    later = (blocks[order * self.len + number] * power).abs().max(later);
-                }
-                size = V::select(told, size, later);
-            }
-            let size = size * tolerance;
-            for which in 0..2 {
-                let of = blocks[self.orders[which] * self.len + number].abs();
-                let ratio = V::select(of.less_equal(V::zero()), V::zero(), of / size);
-                let square = ratio * ratio;
-                // No number is as bad as an infinite one.
-                let sound = square.less(V::splat(HUGE));
-                largest[which] = V::select(sound, square, V::splat(f64::INFINITY)).max(largest[which]);
-            }
+/// The largest squared ratio of the coefficients of two orders to how far their number goes in a step, times a tolerance.
+#[inline(always)]
+fn own_sizes<V: Real>(blocks: &[V], len: usize, orders: [usize; 2], step: V, tolerance: V) -> [V; 2] {
+    let mut largest = [V::zero(); 2];
+    for number in 0..len {
+        let (mut size, mut power) = (V::zero(), V::one());
+        for order in 1..=TELLING {
+            power = power * step;
+            size = (blocks[order * len + number] * power).abs().max(size);
         }
-        [largest[0].store(), largest[1].store()]
+        let told = V::zero().less(size);
+        if !told.all() {
+            let mut later = V::zero();
+            for order in TELLING + 1..=orders[1] {
+                power = power * step;
+                later = (blocks[order * len + number] * power).abs().max(later);
+            }
+            size = V::select(told, size, later);
+        }
+        let size = size * tolerance;
+        for which in 0..2 {
+            let of = blocks[orders[which] * len + number].abs();
+            let ratio = V::select(of.less_equal(V::zero()), V::zero(), of / size);
+            let square = ratio * ratio;
+            // No number is as bad as an infinite one.
+            let sound = square.less(V::splat(HUGE));
+            largest[which] = V::select(sound, square, V::splat(f64::INFINITY)).max(largest[which]);
+        }
     }
+    largest
 }
 
 /// By how much the rates at the end of a step are not those of the polynomial that led there.
