@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// Kepler orbits about a point.
 pub static FORM: ClosedForm = ClosedForm {
     name: "Kepler orbits",
-    reason: "the only force is an inverse-distance centre",
+    reason: "the only force is an inverse-distance center",
     applies: |member| {
         // Beyond the range of numbers k/m has lost digits, or all of them; the units of an integration have it.
         let has_digits = |k: f64| k == 0.0 || member.mass.iter().all(|mass| (k / mass).is_normal());

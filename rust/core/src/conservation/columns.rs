@@ -52,7 +52,7 @@ pub static COLUMNS: &[Column] = &[
     },
     Column {
         name: "center_of_mass",
-        description: "centre of mass; of massless bodies alone, their mean",
+        description: "center of mass; of massless bodies alone, their mean",
         width: 3,
         needs_velocity: false,
         value: |state| Ok(center_of_mass(state.bodies)),

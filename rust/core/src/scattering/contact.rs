@@ -32,7 +32,7 @@ pub fn contact_time(positions: [[f64; 3]; 2], velocities: [[f64; 3]; 2], distanc
         return Err(Error::invalid(
             "position1",
             format!(
-                "expected spheres that do not overlap, but their centres are {} apart and their radii {} together",
+                "expected spheres that do not overlap, but their centers are {} apart and their radii {} together",
                 number(scale(dot(apart, apart).sqrt().to_f64(), far)),
                 number(distance)
             ),

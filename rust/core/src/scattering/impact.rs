@@ -239,7 +239,7 @@ impl Pair {
             return Err(Error::invalid(
                 "impact",
                 format!(
-                    "expected an impact parameter up to the distance of the centres at contact, {}, got {}: they miss",
+                    "expected an impact parameter up to the distance of the centers at contact, {}, got {}: they miss",
                     number(scale(distance, unit)),
                     number(scale(miss, unit))
                 ),

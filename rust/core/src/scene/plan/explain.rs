@@ -196,7 +196,7 @@ impl Plan {
                 skip("the z components", "z and v_z are zero and no force acts along z".to_owned());
             }
             if self.relative {
-                let why = "the others tell where it is, as the centre of mass moves uniformly";
+                let why = "the others tell where it is, as the center of mass moves uniformly";
                 skip("steps of the first massive body", why.to_owned());
             }
             for (index, force) in self.forces.iter().enumerate() {
