@@ -119,6 +119,11 @@ class FramedBodies:
     def reversed(self) -> RigidBodies:
         """The bodies with their velocities and spins, shape (K, 3), turned round.
 
+        Returns
+        -------
+        RigidBodies
+            With −v and −ω, shape (K, 3); all else as it was.
+
         Examples
         --------
         >>> import visviva as vv

@@ -135,6 +135,11 @@ class Force(Declared):
     def reversed(self) -> Self:
         """The force under which bodies with their velocities turned round retrace their path.
 
+        Returns
+        -------
+        Force
+            With the same parameters where velocities do not enter, else with the signs that reversal gives them.
+
         Raises
         ------
         visviva.InvalidInput

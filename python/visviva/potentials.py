@@ -240,6 +240,11 @@ def _between(
     bohr_radius : float, positive, optional
         Bohr's radius in the same units. In Å if not given.
 
+    Returns
+    -------
+    ScreenedCoulomb
+        With k = Z1 Z2 e², in energy · length, and the length in the units of `bohr_radius`.
+
     Raises
     ------
     visviva.InvalidInput

@@ -185,6 +185,11 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
         body : str or int
             Its name, if the particles have names, or its index.
 
+        Returns
+        -------
+        BodyMotion
+            Its columns, in the units of the run, without the axis over the bodies.
+
         Raises
         ------
         visviva.InvalidInput

@@ -192,6 +192,11 @@ class AttachedSpring(BodyForce):
     def reversed(self) -> Self:
         """The same, without damping.
 
+        Returns
+        -------
+        AttachedSpring
+            The same object: a spring alone pushes alike in both directions of time.
+
         Raises
         ------
         visviva.InvalidInput

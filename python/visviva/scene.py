@@ -359,6 +359,11 @@ class Scene(Runnable[Trajectory], Framed):
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state and time, shape (N, 3), in the units of the scene.
 
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            Length per time², in the units of the scene; of rigid bodies that of their centers, after the particles.
+
         Raises
         ------
         visviva.InvalidInput

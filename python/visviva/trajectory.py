@@ -193,6 +193,11 @@ class Trajectory(Recorded):
         ----------
         about : array_like, shape (3,), or "center_of_mass"
 
+        Returns
+        -------
+        ndarray, shape (T, 3)
+            Mass · length² / time, in the units of the scene.
+
         Raises
         ------
         visviva.InvalidInput
@@ -229,6 +234,11 @@ class Trajectory(Recorded):
         ----------
         about : array_like, shape (3,), or "center_of_mass", optional
             Reference point of the angular momentum; the origin by default.
+
+        Returns
+        -------
+        Conservation
+            A row for each quantity: its largest, last and rms drift, in the units of the scene and relative to a scale.
 
         Raises
         ------

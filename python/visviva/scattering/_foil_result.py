@@ -205,6 +205,11 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
         ----------
         fate : {"transmitted", "reflected", "stopped"}
 
+        Returns
+        -------
+        Fraction
+            Of numbers: the part and its standard error, from 0 to 1.
+
         Raises
         ------
         InvalidInput

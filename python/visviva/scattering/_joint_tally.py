@@ -88,7 +88,10 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
 
-        Shape (B₁, B₂), without dimension.
+        Returns
+        -------
+        ndarray, shape (B₁, B₂)
+            Without dimension.
 
         Examples
         --------
@@ -102,7 +105,12 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the values, shape (B₁, B₂), without dimension: as `Tally.variances`.
+        """Variances of the values, as those of `Tally.variances`.
+
+        Returns
+        -------
+        ndarray, shape (B₁, B₂)
+            Without dimension.
 
         Examples
         --------

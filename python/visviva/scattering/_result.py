@@ -305,6 +305,11 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         ----------
         path : path-like
 
+        Returns
+        -------
+        MonteCarlo
+            With the counts, the bins and the potential that were saved.
+
         Raises
         ------
         InvalidInput

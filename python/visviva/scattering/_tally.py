@@ -129,7 +129,10 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
 
-        Shape (B,), without dimension.
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
@@ -145,8 +148,13 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, n·(1 − n/N), binomial: the number N of events is fixed.
 
-        Shape (B,), without dimension. With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all
+        With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all
         weights are 1.
+
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
