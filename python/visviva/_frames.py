@@ -60,7 +60,7 @@ class Framed(ABC):
         Raises
         ------
         visviva.InvalidInput
-            For a boost of a field with a fixed centre.
+            For a boost of a field with a fixed center.
 
         References
         ----------
@@ -114,7 +114,7 @@ class Framed(ABC):
         return self.shifted(position=-(float_array("origin", origin, (3,)) + frame * self.t0), velocity=-frame)
 
     def center_of_mass_frame(self) -> Self:
-        """The scene in the frame in which its centre of mass rests at the origin.
+        """The scene in the frame in which its center of mass rests at the origin.
 
         Returns
         -------

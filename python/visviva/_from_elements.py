@@ -250,7 +250,7 @@ def _put(
 
 
 def _center(there: _Bodies) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Place and velocity of the centre of mass of the bodies that are there, and their mass; their mean if none has."""
+    """Place and velocity of the center of mass of the bodies that are there, and their mass; their mean if none has."""
     from visviva.particles import weighted_mean
 
     total = fsum(there.mass)

@@ -79,7 +79,7 @@ class Conservation(Shown):
     ----------
     energy, momentum, angular_momentum, center_of_mass : Drift
         Scales: |E₀| (kinetic + |potential| if the energy cancels to round-off), Σ m|v|,
-        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The centre of mass is
+        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The center of mass is
         compared with uniform motion.
     virial : float
         ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
@@ -124,7 +124,7 @@ class Conservation(Shown):
         >>> import visviva as vv
         >>> kept = vv.problems.figure_eight().scene.run(t=[1.0, 2.0], rtol=1e-12).conservation()
         >>> [row.name for row in kept.rows]
-        ['energy', 'momentum', 'angular momentum', 'centre of mass']
+        ['energy', 'momentum', 'angular momentum', 'center of mass']
         """
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
 
@@ -175,8 +175,8 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     lost = merged or (collisions is not None and bool(collisions.energy_lost.any()))
 
     t = trajectory.t
-    cancelled = start.kinetic_energy + abs(start.potential_energy)
-    energy_scale = abs(start.energy) if abs(start.energy) > 64 * _EPSILON * cancelled else cancelled
+    canceled = start.kinetic_energy + abs(start.potential_energy)
+    energy_scale = abs(start.energy) if abs(start.energy) > 64 * _EPSILON * canceled else canceled
     about_origin = point is not None and not point.any()
     if about_origin:
         angular = trajectory.angular_momentum
@@ -201,9 +201,9 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
             fsum(mass * distances * speeds) + spin_scale(scene),
             conserved=steady and not merged,
         ),
-        center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
+        center_of_mass=_drift("center of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
         virial=_virial(trajectory, closed) if scene.rigid_bodies is None else np.nan,
-        about="centre of mass" if point is None else "origin" if about_origin else "given point",
+        about="center of mass" if point is None else "origin" if about_origin else "given point",
         massless=int(np.count_nonzero(mass == 0.0)),
         collisions=0 if collisions is None else len(collisions),
     )
@@ -223,15 +223,15 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
         raise InvalidInput("record", f"there is no row from which the drift of {name} could be told")
     divisor = scale if scale > 0.0 else 1.0
     sizes, times = sizes[reached] / divisor, t[reached]
-    centred = times - times.mean()
-    spread = float(centred @ centred)
+    centered = times - times.mean()
+    spread = float(centered @ centered)
     return Drift(
         name=name,
         scale=divisor,
         max=float(sizes.max()),
         end=float(sizes[-1]),
         rms=float(np.sqrt(np.mean(sizes * sizes))),
-        slope=float(centred @ sizes) / spread if spread > 0.0 else 0.0,
+        slope=float(centered @ sizes) / spread if spread > 0.0 else 0.0,
         conserved=conserved,
     )
 

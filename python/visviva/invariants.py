@@ -1,7 +1,7 @@
-"""Momentum, angular momentum, energy, centre of mass: all of them at once, with König's split.
+"""Momentum, angular momentum, energy, center of mass: all of them at once, with König's split.
 
 The sums are the core's compensated ones. The internal kinetic energy and the spin are formed from
-velocities relative to the centre of mass, not as differences of large totals.
+velocities relative to the center of mass, not as differences of large totals.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Invariants(Shown):
     angular_momentum : ndarray, shape (3,)
         About the reference point.
     spin : ndarray, shape (3,)
-        Angular momentum about the centre of mass; angular_momentum = spin + (R − a) × P.
+        Angular momentum about the center of mass; angular_momentum = spin + (R − a) × P.
     torque : ndarray, shape (3,)
         Torque about the reference point: the rate of change of `angular_momentum` about a fixed
-        point, of `spin` about the centre of mass; NaN, as the virial is, beside rigid bodies that torques turn.
+        point, of `spin` about the center of mass; NaN, as the virial is, beside rigid bodies that torques turn.
     kinetic_energy, potential_energy, energy : float
     center_of_mass_kinetic_energy, internal_kinetic_energy : float
         König's split of the kinetic energy: P²/2M and the rest.
@@ -129,7 +129,7 @@ def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
 
 
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
-    """The fixed point asked for; None stands for the centre of mass."""
+    """The fixed point asked for; None stands for the center of mass."""
     if about is None:
         return np.zeros(3)
     if isinstance(about, str):
@@ -145,7 +145,7 @@ def internal_motion(
     velocity: NDArray[np.float64],
     turning: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
-    """Kinetic energy and angular momentum of many states in their centre-of-mass frames."""
+    """Kinetic energy and angular momentum of many states in their center-of-mass frames."""
     total = fsum(scene.particles.mass)
     moments = conserved(scene, position, velocity, np.zeros(3), ["momentum", "center_of_mass"])
     relative_position = position - moments["center_of_mass"][:, None]

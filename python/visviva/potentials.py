@@ -34,7 +34,7 @@ _CURES = {
 
 @known_keywords
 class Potential(Declared):
-    """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
+    """A potential energy V(r) of the distance between two bodies, or from a fixed center.
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
 

@@ -224,7 +224,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
             Names or indices; by default all that orbit something, in their order: all but the body `about`; all but
             the first about "jacobi".
         about : str or int, optional
-            The body that they orbit, by name or index. ``"jacobi"``: each orbits the centre of mass of all bodies
+            The body that they orbit, by name or index. ``"jacobi"``: each orbits the center of mass of all bodies
             before it; ``"center_of_mass"``: that of all the other bodies.
         G : float, optional
             The gravitational constant; by default that of the scene's `Gravity`.

@@ -391,7 +391,7 @@ class Scene(Runnable[Trajectory], Framed):
         )
 
     def invariants(self, about: ArrayLike | str | None = None) -> Invariants:
-        """Momentum, angular momentum, energy, centre of mass and König's split at the scene's state.
+        """Momentum, angular momentum, energy, center of mass and König's split at the scene's state.
 
         Units: those of the scene.
 

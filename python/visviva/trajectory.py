@@ -185,7 +185,7 @@ class Trajectory(Recorded):
         return attached(scene, left_behind(self.scene._keywords, self._result))
 
     def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
-        """Angular momentum about a fixed point or about the moving centre of mass, shape (T, 3).
+        """Angular momentum about a fixed point or about the moving center of mass, shape (T, 3).
 
         Units: those of the scene.
 

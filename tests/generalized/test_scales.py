@@ -33,7 +33,7 @@ def test_a_broken_symmetry_is_broken_in_all_units(width: float) -> None:
 
 
 def test_the_oblate_earth_turns_about_one_axis_only() -> None:
-    """J₂ in SI units, from 7000 km: a thousandth of the attraction, which is 1e-6 of what random metres would see."""
+    """J₂ in SI units, from 7000 km: a thousandth of the attraction, which is 1e-6 of what random meters would see."""
     GM, radius = 3.986e14, 6.378e6
     J = 1.08e-3 * GM * radius**2
 

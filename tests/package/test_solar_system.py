@@ -42,7 +42,7 @@ APPROXIMATE = {
     ),
 }
 # Its nominal errors of longitude and latitude in seconds of arc and of the distance in 1000 km, rounded. Neptune's are
-# more than twice as large: its place is held to DE430 below. "Earth" is the barycentre of Earth and Moon in both.
+# more than twice as large: its place is held to DE430 below. "Earth" is the barycenter of Earth and Moon in both.
 ERRORS = {
     "Mercury": (15, 1, 1),
     "Venus": (20, 1, 4),

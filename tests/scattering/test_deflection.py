@@ -208,7 +208,7 @@ def test_a_trajectory_of_the_scene_turns_as_far() -> None:
         assert turned == pytest.approx(float(expected), abs=3e-9)
 
 
-def test_no_bit_depends_on_neighbours_threads_or_units() -> None:
+def test_no_bit_depends_on_neighbors_threads_or_units() -> None:
     random = np.random.default_rng(3)
     energy, b = 10.0 ** random.uniform(-2.0, 2.0, 300), random.uniform(0.0, 3.0, 300)
     for potential in (LENNARD_JONES, V.ScreenedCoulomb(1.0, 1.0, "zbl"), V.Morse(1.0, 1.3, 1.5)):

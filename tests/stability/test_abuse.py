@@ -20,7 +20,7 @@ FINE: dict[str, dict[str, Any]] = {
 }
 
 
-def rounding_at_pericentre(e: float) -> float:
+def rounding_at_pericenter(e: float) -> float:
     """Rounding the starting state changes the period: Δa/a = (1+e)/(1-e) · 3ε, and the phase by 3π of that, at a
     speed of √((1+e)/(1-e))."""
     speed = np.sqrt((1 + e) / (1 - e))
@@ -33,7 +33,7 @@ def test_eccentricity_to_one_closed_form(e: float) -> None:
     problem = vv.problems.kepler(e=e)
     out = problem.scene.run(t=problem.t_end)
     assert out.stats.steps == out.stats.evaluations == 0
-    assert problem.error(out) < 2 * rounding_at_pericentre(e) + 4 * EPSILON
+    assert problem.error(out) < 2 * rounding_at_pericenter(e) + 4 * EPSILON
 
 
 @pytest.mark.parametrize(("e", "bound"), [(0.9, 1e-10), (0.99, 2e-9), (0.999, 6e-8), (0.9999, 2e-6), (1 - 1e-6, 3e-4)])

@@ -39,7 +39,7 @@ def test_a_close_encounter_backwards() -> None:
     assert caught.value.time == pytest.approx(-COLLISION, abs=1e-8)
 
 
-def test_a_fixed_centre_is_met_by_one_body() -> None:
+def test_a_fixed_center_is_met_by_one_body() -> None:
     scene = vv.Scene(
         vv.Particles([1.0, 1.0], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]),
         vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=5.0)),
@@ -104,7 +104,7 @@ def test_after_an_encounter_the_final_scene_is_of_one_time() -> None:
 
 
 def test_after_an_encounter_bodies_that_do_not_interact_are_of_one_time() -> None:
-    """One of three falls into the centre, the others circle: they are where a run to that time finds them."""
+    """One of three falls into the center, the others circle: they are where a run to that time finds them."""
     field = vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=5.0))
     x, v = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.6, 0.0], [0.5, 0.0, 0.0]]
     with pytest.raises(vv.CloseEncounter) as caught:
@@ -116,12 +116,12 @@ def test_after_an_encounter_bodies_that_do_not_interact_are_of_one_time() -> Non
 
 
 def test_a_final_scene_of_fixed_steps_is_the_last_that_is_finite() -> None:
-    """One of two bodies meets the centre to the bit and is no number from then on."""
+    """One of two bodies meets the center to the bit and is no number from then on."""
     field = vv.CentralField(vv.potentials.Coulomb(-1.0))
     particles = vv.Particles([1.0, 1.0], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], [[-1.0, 0.0, 0.0], [0.0, 0.7, 0.0]])
     scene = vv.Scene(particles, field)
-    # A first kick of half a step of 2 makes the speed -2; the drift then ends at -3, through the centre; a speed of 0.5
-    # before it ends in the centre itself.
+    # A first kick of half a step of 2 makes the speed -2; the drift then ends at -3, through the center; a speed of 0.5
+    # before it ends in the center itself.
     scene = scene.with_state(particles.position, [[0.5, 0.0, 0.0], [0.0, 0.7, 0.0]], 0.0)
     for record in (("position", "velocity"), ("position",)):
         with pytest.raises(vv.ConvergenceError) as caught:

@@ -95,7 +95,7 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     strength : array_like
         γ in energy times length: positive attracts (G M m), negative repels.
     position, velocity : array_like, shape (…, 3)
-        State relative to the centre.
+        State relative to the center.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     Raises
     ------
     InvalidInput
-        For a wrong shape, NaN or infinity, a mass that is not positive, γ = 0, or a position at the centre.
+        For a wrong shape, NaN or infinity, a mass that is not positive, γ = 0, or a position at the center.
 
     References
     ----------
@@ -244,9 +244,9 @@ def semi_major_axis(mu: ArrayLike, period: ArrayLike) -> NDArray[np.float64]:
 
 @known_keywords
 def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDArray[np.float64]:
-    """Find the time to fall from rest at one distance from the centre to another.
+    """Find the time to fall from rest at one distance from the center to another.
 
-    √(R³/2μ)(θ + sin θ cos θ) with r = R cos²θ; to the centre itself π√(R³/8μ).
+    √(R³/2μ)(θ + sin θ cos θ) with r = R cos²θ; to the center itself π√(R³/8μ).
 
     Units: μ is in length³ / time², in the caller's units of both.
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
 class Elements(OfOrbits, Shown):
-    """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
+    """The elements of orbits about a fixed center, per unit mass; what :func:`elements` returns.
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
 
@@ -49,7 +49,7 @@ class Elements(OfOrbits, Shown):
         A = v×L − μ r/|r|: towards the pericenter, of length |μ| e.
     hodograph_center, hodograph_radius : ndarray
         The velocities lie on a circle about this vector with the radius |μ|/L; radial motion has no
-        centre (NaN) and an infinite radius.
+        center (NaN) and an infinite radius.
     eccentricity : ndarray
         e ≥ 0.
     semi_major_axis, semi_minor_axis : ndarray
@@ -141,7 +141,7 @@ class Elements(OfOrbits, Shown):
     def __reduce__(self) -> tuple[Any, ...]:
         # A dataclass would leave behind what is no field: the times and names of the rows.
         own = {name: getattr(self, name) for name in type(self).__slots__}
-        return labelled, (own, getattr(self, "_axes", {}))
+        return labeled, (own, getattr(self, "_axes", {}))
 
     @property
     def longitude_of_ascending_node(self) -> NDArray[np.float64]:
@@ -254,7 +254,7 @@ class Elements(OfOrbits, Shown):
         return plot_elements(self, element, ax)
 
 
-def labelled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
+def labeled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
     """Elements that know what stands along their axes."""
     made = Elements(**columns)
     made._along(axes)
@@ -274,7 +274,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     mu : array_like
         Strength of the acceleration −μ r/|r|³: G(m₁ + m₂), negative for repulsion, not 0.
     position, velocity : array_like, shape (…, 3)
-        State relative to the centre.
+        State relative to the center.
 
     Returns
     -------
@@ -284,7 +284,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     Raises
     ------
     InvalidInput
-        For a wrong shape, NaN or infinity, a position at the centre, or μ = 0, for which there is no conic.
+        For a wrong shape, NaN or infinity, a position at the center, or μ = 0, for which there is no conic.
 
     References
     ----------

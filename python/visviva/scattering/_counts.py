@@ -25,7 +25,7 @@ _SUMMED = 500
 _EXPECTED = 1.0
 
 _AXES = {
-    "cm_angle": ("angle in the centre-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
+    "cm_angle": ("angle in the center-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
     "lab_angle": ("laboratory angle [degrees]", "dσ/dΩ₁ [area per steradian]"),
     "recoil_angle": ("recoil angle [degrees]", "dσ/dΩ₂ [area per steradian]"),
     "energy": ("energy afterwards", "dσ/dE₁"),

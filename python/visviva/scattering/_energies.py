@@ -31,7 +31,7 @@ def energy_transfer(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -83,7 +83,7 @@ def energy_kept(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -319,7 +319,7 @@ def two_branch_energy(
 ) -> NDArray[np.float64]:
     """Beam energy at which a laboratory angle begins, or ceases, to have two energies.
 
-    There the projectile is as fast in the centre-of-mass frame as the frame itself. A light projectile that takes up
+    There the projectile is as fast in the center-of-mass frame as the frame itself. A light projectile that takes up
     energy has two branches from the threshold to here; a heavy one that releases energy has them beyond.
 
     Units: the energy is in those of `q_value`; ratios are without dimension.

@@ -136,7 +136,7 @@ class LargeAngles(Record):
     Parameters
     ----------
     smallest_angle : float
-        From the beam, in the centre-of-mass frame: in radians, in (0, π).
+        From the beam, in the center-of-mass frame: in radians, in (0, π).
     fraction : float, optional
         The part of the events within, 1e-6 to 1 − 1e-6.
 

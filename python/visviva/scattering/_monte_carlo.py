@@ -61,7 +61,7 @@ def monte_carlo(
     importance: Strata | LargeAngles | None = None,
     channels: Channel | Iterable[Channel] | None = None,
 ) -> MonteCarlo:
-    """Scatter a beam off one centre and count every event.
+    """Scatter a beam off one center and count every event.
 
     The impact parameter is uniform over a disc: b² uniform in [0, b_max²). Event i takes its random numbers from
     Philox 4x32-10 with ``seed`` as the key and i as the counter, so the counts do not depend on threads, processor or
@@ -93,7 +93,7 @@ def monte_carlo(
     seed : int
         0 to 2⁶⁴ − 1.
     tally : str, iterable of str, or mapping
-        What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
+        What to count: ``"cm_angle"`` (size of the deflection in the center-of-mass frame), ``"lab_angle"``,
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
         ``{name: edges}``, where a whole number in place of edges is a number of equal bins, and `Bins` are bins by
         name: ``Bins.logarithmic(60, 1e-3)``, ``Bins.solid_angle(50)``. Angles are in radians.
@@ -122,7 +122,7 @@ def monte_carlo(
         planes. ``lab_angle`` and ``recoil_angle`` are then measured from the axis; ``cm_angle`` stays that of the
         collision.
     spot : float, optional
-        Standard deviation, in each of two dimensions, of the places at which projectiles come, about the centre and cut
+        Standard deviation, in each of two dimensions, of the places at which projectiles come, about the center and cut
         at ``b_max``; by default the disc is filled evenly (of another radius: that is ``b_max``). There is no cross
         section of a beam that does not fill the disc evenly.
     importance : Strata or LargeAngles, optional

@@ -112,7 +112,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
 
     @property
     def smallest_angle(self) -> float:
-        """The deflection at the edge of the disc, in the centre-of-mass frame, in radians: see `Beam`.
+        """The deflection at the edge of the disc, in the center-of-mass frame, in radians: see `Beam`.
 
         Examples
         --------
@@ -212,7 +212,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
         ...     tally=["cm_angle", "recoil_energy"])
         >>> [axes.get_xlabel() for axes in result.plot().axes]
-        ['', 'angle in the centre-of-mass frame [degrees]', '', 'recoil energy']
+        ['', 'angle in the center-of-mass frame [degrees]', '', 'recoil energy']
         """
         from visviva._residuals import new_panels
 
