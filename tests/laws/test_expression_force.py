@@ -236,3 +236,25 @@ def test_parameters_of_copies_are_asked_by_name() -> None:
     assert (
         pickle.loads(pickle.dumps(scene.ensemble(parameters={trap: {"k": [1.0, 3.0]}}))).forces[1][0].values[0] == 3.0
     )
+
+
+@pytest.mark.parametrize(
+    ("force", "shown"),
+    [
+        (vv.ExpressionForce(potential=bowl, parameters={"k": 2.0}), "potential=k*(x**2 + y**2 + z**2)/2, k=2.0"),
+        (
+            vv.ExpressionForce(force=[-k * x, vy, sp.sin(3 * t)], parameters={k: 2.0}),
+            "force=(-k*x, vy, sin(3*t)), k=2.0",
+        ),
+        (vv.ExpressionForce(potential=sum(x**n / n for n in range(1, 20))), "potential=80 nodes"),
+        (vv.ExpressionForce(potential=x).rescaled(length=2.0), "potential=x, length=2.0"),
+        (
+            vv.ExpressionForce(potential=x).shifted(np.array([1.0, 0, 0]), np.zeros(3)),
+            "potential=x, origin=(1.0, 0.0, 0.0)",
+        ),
+    ],
+)
+def test_a_force_prints_as_its_formula(force: vv.forces.Force, shown: str) -> None:
+    """And not as the table of numbers that it keeps."""
+    assert repr(force) == f"ExpressedForce({shown})"
+    assert shown in repr(vv.Scene(bodies(), force).forces)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from visviva._html import Record
+from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
@@ -46,6 +46,9 @@ class Fraction(NamedTuple, Generic[_T]):
     """As a part of the events."""
     error: _T
     """One standard deviation."""
+
+    def __repr__(self: Fraction[Any]) -> str:
+        return brief_tuple(self)
 
 
 def summed(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) -> tuple[Any, Any]:
