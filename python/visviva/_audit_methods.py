@@ -135,8 +135,8 @@ def reversal(
     True
     """
     _check(scene)
-    there = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
-    back = there.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
+    end = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
+    back = end.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
     return float(np.abs(back.particles.position - scene.particles.position).max(initial=0.0)) / _size(scene)
 
 

@@ -139,9 +139,9 @@ def _check(
         raise InvalidInput("G", "expected units in which G times the masses is within the range of float64")
     if lost.any():
         raise InvalidInput("about", f"expected a distance of {who} from {whom} within the range of float64")
-    there = (r == 0.0).all(axis=-1)
-    if there.any():
-        row = tuple(np.argwhere(there)[0].tolist())
+    coincident = (r == 0.0).all(axis=-1)
+    if coincident.any():
+        row = tuple(np.argwhere(coincident)[0].tolist())
         raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
 
 

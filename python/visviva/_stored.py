@@ -28,10 +28,10 @@ __all__ = [
     "VERSION",
     "Damaged",
     "check_all",
+    "check_contents",
     "check_keys",
     "check_version",
-    "checked",
-    "opened",
+    "read_file",
 ]
 
 FORMAT = "visviva run"
@@ -153,7 +153,7 @@ class Damaged(Exception):
         self.message = message
 
 
-def opened(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+def read_file(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """The header and the arrays of a file that visviva wrote, of whatever format.
 
     Raises
@@ -188,7 +188,7 @@ def check_version(header: dict[str, Any], newest: int) -> None:
         )
 
 
-def checked(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+def check_contents(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
     """Make sure that all is there that a result of a scene needs.
 
     Raises

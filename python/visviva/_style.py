@@ -25,11 +25,11 @@ __all__ = [
     "FRAME",
     "LINES",
     "VERMILION",
-    "dress",
     "legend_beside",
     "legend_within",
     "plot_style",
     "set_box",
+    "style_axes",
     "without_matplotlib",
 ]
 
@@ -99,7 +99,7 @@ def without_matplotlib() -> InvalidInput:
     return InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'")
 
 
-def dress(axes: Axes) -> None:
+def style_axes(axes: Axes) -> None:
     """Give new axes the colors and the frame of all pictures."""
     axes.set_prop_cycle(_cycle())
     if not hasattr(axes, "get_zlim"):

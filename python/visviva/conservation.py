@@ -19,7 +19,7 @@ from visviva._mergers import by_era
 from visviva._text import count
 from visviva._turning import spin_scale
 from visviva.errors import InvalidInput
-from visviva.invariants import conserved, internal_motion, kept_by_forces, of_scene, reference_point
+from visviva.invariants import conserved, internal_motion, invariants_of, kept_by_forces, reference_point
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -158,18 +158,18 @@ class Conservation(Shown):
         return "\n".join(lines)
 
 
-def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
+def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
     """The table of a trajectory."""
     scene = trajectory.scene
-    start = of_scene(scene, about)
+    start = invariants_of(scene, about)
     point = reference_point(about)
     mass, position, velocity = scene.particles.mass, scene.particles.position, scene.particles.velocity
     origin = start.center_of_mass if point is None else point
     speeds = _lengths(velocity - (start.center_of_mass_velocity if point is None else 0.0))
     distances = _lengths(position - origin)
     spread = float(_lengths(position - start.center_of_mass).max())
-    kept = kept_by_forces(scene, origin)
-    closed, steady = kept["momentum"], kept["spin" if point is None else "angular_momentum"]
+    conserved = kept_by_forces(scene, origin)
+    closed, steady = conserved["momentum"], conserved["spin" if point is None else "angular_momentum"]
     collisions = trajectory.collisions if "collisions" in trajectory._result else None
     merged = collisions is not None and bool((collisions.survivor >= 0).any())
     lost = merged or (collisions is not None and bool(collisions.energy_lost.any()))
@@ -185,7 +185,7 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
     return Conservation(
         energy=_drift(
-            "energy", t, trajectory.energy - start.energy, energy_scale, conserved=kept["energy"] and not lost
+            "energy", t, trajectory.energy - start.energy, energy_scale, conserved=conserved["energy"] and not lost
         ),
         momentum=_drift(
             "momentum",

@@ -16,7 +16,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import short, table
+from visviva._text import short_repr, table
 from visviva._turning import kept_by_bodies
 from visviva.errors import InvalidInput
 
@@ -82,7 +82,7 @@ class Invariants(Shown):
     virial: float
 
     def __repr__(self) -> str:
-        return short(self)
+        return short_repr(self)
 
     def __str__(self) -> str:
         return table(self)
@@ -122,10 +122,10 @@ def conserved(
 def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
     """What the forces leave constant: energy, momentum, angular momentum about a point at rest, and spin."""
     p = scene.particles
-    kept = _core.conserves(
+    flags = _core.conserves(
         mass=p.mass, forces=scene._keywords["forces"], position=p.position, velocity=p.velocity, about=about
     )
-    return kept if scene.rigid_bodies is None else kept_by_bodies(scene, kept)
+    return flags if scene.rigid_bodies is None else kept_by_bodies(scene, flags)
 
 
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
@@ -154,7 +154,7 @@ def internal_motion(
     return conserved(scene, relative_position, relative_velocity, np.zeros(3), wanted, turning)
 
 
-def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
+def invariants_of(scene: Scene, about: ArrayLike | str | None) -> Invariants:
     """Everything at the state of a scene."""
     p = scene.particles
     total = fsum(p.mass)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
 from visviva._arrays import float_array, positive
-from visviva._custom_potential import Custom, written
-from visviva._declared import Declared, make
+from visviva._custom_potential import Custom, formula_of
+from visviva._declared import Declared, class_from_entry
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass, unknown_name
 from visviva.errors import InvalidInput
 
@@ -272,11 +272,11 @@ def _between(
 # What a class has beside what is declared.
 _FURTHER: dict[str, dict[str, Any]] = {
     "screened_coulomb": {"between": classmethod(_between)},
-    "expressed": {"__repr__": written},
+    "expressed": {"__repr__": formula_of},
 }
 _SHAPES = "Distances may have any shape; values, forces and curvatures have the same."
 _BY_NAME = {
-    entry["name"]: make(
+    entry["name"]: class_from_entry(
         entry | {"notes": f"{entry['notes']} {_SHAPES}".strip()},
         Potential,
         __name__,

@@ -16,12 +16,12 @@ from visviva import _core
 from visviva import forces as force_classes
 from visviva._arrays import number
 from visviva._body_force import BodyForce
-from visviva._continuation import attached
+from visviva._continuation import with_continuation
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import JOINING, known_keywords
 from visviva._text import article
-from visviva._turning import described, joined, with_centers
+from visviva._turning import described, joined_bodies, with_centers
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
@@ -147,7 +147,7 @@ class Scene(Runnable[Trajectory], Framed):
         if len(found) > 1 or not (found or rigid):
             advice = JOINING if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        bodies = joined(rigid) if rigid else None
+        bodies = joined_bodies(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]
         acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
         counts = (len(found[0]) if found else 0, len(bodies) if bodies else 0)
@@ -419,9 +419,9 @@ class Scene(Runnable[Trajectory], Framed):
         >>> vv.problems.pythagorean().scene.invariants().energy
         -12.816666666666666
         """
-        from visviva.invariants import of_scene
+        from visviva.invariants import invariants_of
 
-        return of_scene(self, about)
+        return invariants_of(self, about)
 
     def elements(
         self,
@@ -504,7 +504,7 @@ def _rebuild(
 ) -> Scene:
     scene = object.__new__(Scene)
     scene._set(particles, forces, t0, rigid_bodies, body_forces)
-    return attached(scene, continuation)
+    return with_continuation(scene, continuation)
 
 
 def __dir__() -> list[str]:

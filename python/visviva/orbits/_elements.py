@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._html import Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import table
-from visviva.orbits._arguments import broadcast, fields, shaped
+from visviva.orbits._arguments import broadcast, fields, with_shape
 from visviva.orbits._rows import OfOrbits
 
 if TYPE_CHECKING:
@@ -124,19 +124,19 @@ class Elements(OfOrbits, Shown):
     turning_angle: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        from visviva.orbits._told_elements import in_a_line
+        from visviva.orbits._elements_table import in_a_line
 
         return in_a_line(self)
 
     def __str__(self) -> str:
-        from visviva.orbits._told_elements import is_few
+        from visviva.orbits._elements_table import is_few
 
         return table(self) if is_few(self) else as_text(self._sheet())
 
     def _sheet(self) -> Sheet:
-        from visviva.orbits._told_elements import told
+        from visviva.orbits._elements_table import elements_table
 
-        return told(self)
+        return elements_table(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A dataclass would leave behind what is no field: the times and names of the rows.
@@ -256,9 +256,9 @@ class Elements(OfOrbits, Shown):
 
 def labeled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
     """Elements that know what stands along their axes."""
-    made = Elements(**columns)
-    made._along(axes)
-    return made
+    elements = Elements(**columns)
+    elements._along(axes)
+    return elements
 
 
 @known_keywords
@@ -300,4 +300,4 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     """
     shape, (mu_,), (position_, velocity_) = broadcast({"mu": mu}, {"position": position, "velocity": velocity})
     columns = _core.orbit_elements(mu_, position_, velocity_)
-    return Elements(mu=shaped(mu_, shape), **fields(columns, shape))
+    return Elements(mu=with_shape(mu_, shape), **fields(columns, shape))

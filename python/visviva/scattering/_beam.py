@@ -148,10 +148,10 @@ class Spread(Record):
 
 
 def _spread(shape: str, width: float) -> Spread:
-    made = object.__new__(Spread)
-    object.__setattr__(made, "shape", shape)
-    object.__setattr__(made, "width", width)
-    return made
+    spread = object.__new__(Spread)
+    object.__setattr__(spread, "shape", shape)
+    object.__setattr__(spread, "width", width)
+    return spread
 
 
 def as_spread(name: str, given: object) -> Spread | None:

@@ -9,7 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
-from visviva.scattering._arguments import angles, encounter, flat, kinematic
+from visviva.scattering._arguments import angles, encounter, flat_broadcast, kinematic
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -361,7 +361,7 @@ def _special(name: str, mass_ratio: object, q_value: object, products: object) -
         raise InvalidInput("mass_ratio", "expected m1/m2, got None")
     given = encounter(mass_ratio, q_value, 1.0, products)
     del given["beam_energy"]
-    (ratio, released, third, fourth), shape = flat(given)
+    (ratio, released, third, fourth), shape = flat_broadcast(given)
     if 0 in shape:
         return np.empty(shape)
     return _core.special_energy(name, ratio, released, (third, fourth)).reshape(shape)[()]

@@ -13,7 +13,7 @@ from visviva._keywords import known_keywords, one_of
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._foil_tally import FoilTally, Fraction, summed
-from visviva.scattering._of_events import is_zero, merged
+from visviva.scattering._of_events import is_zero, joined_ranges
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
@@ -254,7 +254,7 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        events = merged((*self.events, *other.events))
+        events = joined_ranges((*self.events, *other.events))
         tallies = tuple(self[name]._joined(other[name]) for name in self)
         return replace(self, events=events, sums=self.sums + other.sums, tallies=tallies)
 

@@ -15,7 +15,7 @@ from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import ExportedTally, intervals
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added, read_only, same, variances, weighted, weighted_columns
+from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_columns, weighted_counts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -124,7 +124,7 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         return variances(self.values(), self._weighted(2), self.n_events)
 
     def _weighted(self, power: int) -> NDArray[np.float64]:
-        return weighted(self, power, self.flow)[1:-1, 1:-1]
+        return weighted_counts(self, power, self.flow)[1:-1, 1:-1]
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
@@ -214,5 +214,5 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
             flow=self.flow + other.flow,
             captured=self.captured + other.captured,
             events=self._merged_events(other),
-            by_stratum=added(self.by_stratum, other.by_stratum),
+            by_stratum=added_strata(self.by_stratum, other.by_stratum),
         )

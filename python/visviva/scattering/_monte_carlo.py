@@ -16,7 +16,7 @@ from visviva.errors import Interrupted
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
-from visviva.scattering._importance import LargeAngles, Strata, resolved
+from visviva.scattering._importance import LargeAngles, Strata, strata_of
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._spread import spread
@@ -193,10 +193,12 @@ def _beam(
         spot=None if spot is None else positive("spot", spot),
         channels=as_channels(channels),
     )
-    return replace(beam, importance=resolved(importance, beam))
+    return replace(beam, importance=strata_of(importance, beam))
 
 
-def again(result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any) -> MonteCarlo:
+def next_events(
+    result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any
+) -> MonteCarlo:
     """The next events of a result."""
     asked: list[Axes] = []
     for tally in result.tallies:
@@ -217,7 +219,7 @@ def _pair(masses: object) -> tuple[float, float]:
     return (float(pair[0]), float(pair[1]))
 
 
-def _which(first_event: object, n_events: object, seed: object) -> tuple[int, int, int]:
+def _event_range(first_event: object, n_events: object, seed: object) -> tuple[int, int, int]:
     first = whole_number("first_event", first_event, 0, 2**63 - 1)
     count = whole_number("n_events", n_events, 1, 2**63 - first)
     return first, count, whole_number("seed", seed, 0, 2**64 - 1)
@@ -233,7 +235,7 @@ def _run(
     progress: Progress,
     executor: Any,
 ) -> MonteCarlo:
-    first, count, key = _which(first_event, n_events, seed)
+    first, count, key = _event_range(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "tallies": asked, "seed": key, "threads": several}
     with callback(progress, "events") as report:

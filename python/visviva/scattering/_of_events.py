@@ -9,7 +9,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.scattering._beam import Beam
 
-__all__ = ["OfEvents", "is_zero", "merged"]
+__all__ = ["OfEvents", "is_zero", "joined_ranges"]
 
 
 class OfEvents:
@@ -64,7 +64,7 @@ class OfEvents:
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
-        return merged((*self.events, *other.events))
+        return joined_ranges((*self.events, *other.events))
 
 
 def is_zero(value: object) -> bool:
@@ -72,7 +72,7 @@ def is_zero(value: object) -> bool:
     return type(value) is int and value == 0
 
 
-def merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+def joined_ranges(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
     """Sort and join ranges of events; an event that is in two would count twice."""
     joined: list[tuple[int, int, int]] = []
     for seed, first, end in sorted(ranges):

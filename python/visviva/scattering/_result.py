@@ -18,7 +18,7 @@ from visviva.scattering._beam import Beam, Spectrum
 from visviva.scattering._counts import theory_is_known
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._saved import kept, restored
+from visviva.scattering._saved import counts_for_file, counts_from_file
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -259,10 +259,10 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         True
         """
         from visviva.errors import Interrupted
-        from visviva.scattering._monte_carlo import again
+        from visviva.scattering._monte_carlo import next_events
 
         try:
-            return self + again(self, n_events, threads, progress, executor)
+            return self + next_events(self, n_events, threads, progress, executor)
         except Interrupted as stopped:
             stopped.result = self + stopped.result if isinstance(stopped.result, MonteCarlo) else self
             raise
@@ -294,7 +294,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         >>> vv.scattering.MonteCarlo.load(path) == run
         True
         """
-        write(path, *kept(self.beam, self.events, self.tallies))
+        write(path, *counts_for_file(self.beam, self.events, self.tallies))
 
     @staticmethod
     @known_keywords
@@ -328,7 +328,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         with open(path_text("path", path), "rb") as stream:
             try:
                 with np.load(stream, allow_pickle=False) as file:
-                    return MonteCarlo(*restored({name: file[name] for name in file.files}))
+                    return MonteCarlo(*counts_from_file({name: file[name] for name in file.files}))
             except MemoryError:
                 raise
             except Exception as error:  # NumPy, zipfile and json raise what they please

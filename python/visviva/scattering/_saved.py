@@ -22,14 +22,14 @@ from visviva.scattering._tally import Tally
 if TYPE_CHECKING:
     from visviva.typing import TallyName
 
-__all__ = ["kept", "restored"]
+__all__ = ["counts_for_file", "counts_from_file"]
 
 # Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels, version 5
 # their excitation functions.
 _FORMAT, _VERSION = "visviva scattering", 5
 
 
-def kept(
+def counts_for_file(
     beam: Beam, events: tuple[tuple[int, int, int], ...], tallies: tuple[Tally | JointTally, ...]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Header and arrays of a file that holds these counts."""
@@ -80,7 +80,7 @@ def _spread(told: list[Any] | None) -> Spread | None:
     return {"gaussian": Spread.gaussian, "uniform": Spread.uniform}[told[0]](told[1])
 
 
-def restored(
+def counts_from_file(
     arrays: dict[str, Any],
 ) -> tuple[Beam, tuple[tuple[int, int, int], ...], tuple[Tally | JointTally, ...]]:
     """Beam, events and tallies of such a file; counts that do not add up to its events are refused.

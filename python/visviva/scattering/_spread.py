@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from visviva import _core
-from visviva._executors import answers, checked_executor
+from visviva._executors import checked_executor, results_in_order
 from visviva.errors import InternalError
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def spread(executor: Any, request: dict[str, Any], first: int, count: int, repor
     bounds = [first + count * part // parts for part in range(parts + 1)]
     ranges = [(request, start, end - start) for start, end in pairwise(bounds)]
     home: list[Any] = []
-    with suppress(KeyboardInterrupt), closing(answers(executor, count_range, ranges)) as coming:
+    with suppress(KeyboardInterrupt), closing(results_in_order(executor, count_range, ranges)) as coming:
         for came, (_, start, events) in zip(coming, ranges, strict=True):
             if came[3] != table:
                 raise InternalError(f"a worker built another table: {came[3]} instead of {table}")
