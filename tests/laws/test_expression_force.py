@@ -84,7 +84,8 @@ def test_what_there_is_moves_as_the_same_expression(name: str, method: dict[str,
         assert np.abs(out.position - wanted.position).max() < 1e-10
         assert np.abs(out.velocity - wanted.velocity).max() < 1e-10
     if name in ("oscillator", "central"):
-        assert np.allclose(out.potential_energy, wanted.potential_energy, rtol=1e-9)
+        # As the places from which they come; measured 1.2e-12.
+        assert np.allclose(out.potential_energy, wanted.potential_energy, rtol=1e-11, atol=0.0)
         assert np.ptp(out.energy) < 1e-10 * np.abs(out.kinetic_energy).max()
 
 
@@ -146,7 +147,8 @@ def test_what_leaves_the_domain_ends_there_with_what_was_computed() -> None:
     fall = vv.ExpressionForce(force=[-1 / sp.sqrt(x), 0, 0])
     with pytest.raises(vv.ConvergenceError) as caught:
         vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), fall).run(t=[1.0, 10.0], rtol=1e-10)
-    assert abs(caught.value.time - 4 / 3) < 1e-6
+    # Steps of a relative tolerance shrink to the end itself; measured 2.8e-12.
+    assert abs(caught.value.time - 4 / 3) < 3e-11
     assert np.isfinite(caught.value.trajectory.position).all()
 
 

@@ -89,7 +89,8 @@ def test_central_fields(
     scene = vv.Scene(vv.Particles([1.0], position[None], velocity[None]), vv.CentralField(potential))
     out = scene.run(t=np.linspace(0.0, 2.0, 5), method="dop853", rtol=1e-12)
     table = out.conservation()
-    assert table.energy.max * table.energy.scale < 1e-9
-    assert table.angular_momentum.max * table.angular_momentum.scale < 1e-9
+    # Some steps of a tolerance of 1e-12, magnified where the path comes near to the center; measured 3e-12.
+    assert table.energy.max * table.energy.scale < 1e-10
+    assert table.angular_momentum.max * table.angular_momentum.scale < 1e-10
     normal = scene.invariants().angular_momentum
     assert np.abs(out.position[:, 0] @ (normal / np.linalg.norm(normal))).max() < 1e-10

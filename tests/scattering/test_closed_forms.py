@@ -88,6 +88,7 @@ def test_laboratory_cross_sections_of_gold() -> None:
     assert barns == pytest.approx([1886.224, 122.0106, 8.759546, 2.189547, 0.9728810, 0.6284875], rel=3e-7)
     first, second = s.cm_angle(lab, mass_ratio=ALPHA / GOLD)
     degrees = [15.301333, 30.582139, 61.008329, 91.164338, 121.008329, 150.582139]
+    # Six printed decimals, and below seven: half a unit of the last.
     assert np.degrees(first) == pytest.approx(degrees, abs=5.1e-7)
     assert np.isnan(second).all()
     assert 1.0 - s.energy_transfer(np.pi, mass_ratio=ALPHA / GOLD) == pytest.approx(0.9219247, abs=5.1e-8)
