@@ -56,7 +56,7 @@ class BodyForce:
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
-        refuse_subclass(cls, "a torque of one's own is a CompiledTorque")
+        refuse_subclass(cls, "a custom torque is a CompiledTorque")
 
     def _values(self) -> dict[str, Any]:
         return {each.name: getattr(self, each.name) for each in fields(cast("DataclassInstance", self))}

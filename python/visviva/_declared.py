@@ -288,7 +288,7 @@ def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...]) -> str:
         "Raises",
         "------",
         "visviva.InvalidInput",
-        "    If a parameter is not what is said above, or not finite.",
+        "    If a parameter is not as described above, or not finite.",
     ]
     lines += ["", "References", "----------", entry["source"] + "."]
     lines += ["", "Examples", "--------", ">>> import visviva as vv", *entry["example"].splitlines()]

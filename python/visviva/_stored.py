@@ -262,7 +262,7 @@ def _check_header(header: dict[str, Any]) -> None:
             check_keys("header", header, {name: dict})
             check_keys("header", header[name], {**_SHARED, **own})
     if header.get("continuation", {}).get("goes_on") and "start_continuation" not in header:
-        raise Damaged("the file has a run that goes on with another, and not what it goes on with")
+        raise Damaged("the file has a run that continues another one, but not the state it continues from")
     for name, length in (("rows", 3), ("skipped", 2)):
         for row in header["plan"][name]:
             if not (isinstance(row, list) and len(row) == length and all(isinstance(word, str) for word in row)):

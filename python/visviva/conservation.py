@@ -220,7 +220,7 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
     sizes = np.abs(change) if change.ndim == 1 else _lengths(change)
     reached = np.isfinite(sizes)
     if not reached.any():
-        raise InvalidInput("record", f"there is no row from which the drift of {name} could be told")
+        raise InvalidInput("record", f"there is no row from which to compute the drift of {name}")
     divisor = scale if scale > 0.0 else 1.0
     sizes, times = sizes[reached] / divisor, t[reached]
     centered = times - times.mean()

@@ -184,7 +184,7 @@ class CompiledTorque(BodyForce):
 
     kind: ClassVar[str] = "compiled_torque"
     _dimensions = {}  # noqa: RUF012
-    _one_way = "nobody knows the reverse of a function"
+    _one_way = "a function has no known reverse"
 
     function: CompiledFunction
     body: int | str | None

@@ -132,7 +132,7 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
     _parts(scene, replace(request, save_every=every), asked, _core.plan(asked))
     folder = Path(path_text("save_to", request.save_to, "folder"))
     if (folder / _REQUEST).exists():
-        raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume goes on with it")
+        raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume continues it")
     folder.mkdir(exist_ok=True)
     # A state of no length: the scene, and what it goes on with itself.
     scene.run(t=[scene.t0], record=("position", "velocity")).save(folder / _START)

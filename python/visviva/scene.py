@@ -378,7 +378,7 @@ class Scene(Runnable[Trajectory], Framed):
         from visviva._mergers import hosts
 
         if not self._turns_freely:
-            raise InvalidInput("rigid_bodies", "accelerations are not told of rigid bodies that torques turn")
+            raise InvalidInput("rigid_bodies", "accelerations are not available for rigid bodies under torques")
 
         p = self.particles
         parts = hosts(p)
