@@ -42,8 +42,10 @@ def test_golden_geiger_marsden() -> None:
     potential = vv.potentials.Coulomb(expected["k"])
     keywords = {"energy": expected["E_cm_J"], "angle": given["psi"]}
     b = s.rutherford_impact_parameter(potential, **keywords)
-    assert b == pytest.approx(expected["b"], rel=2e-15)
-    assert s.rutherford_cross_section(potential, **keywords) == pytest.approx(expected["sigma_m2_per_sr"], rel=2e-15)
+    # In SI units all is small, and pytest's own absolute tolerance of 1e-12 would pass anything.
+    assert b == pytest.approx(expected["b"], rel=2e-15, abs=0.0)
+    sigma = s.rutherford_cross_section(potential, **keywords)
+    assert sigma == pytest.approx(expected["sigma_m2_per_sr"], rel=2e-15, abs=0.0)
     assert given["nt"] * np.pi * b**2 == pytest.approx(expected["fraction_back"], rel=1e-14)
 
 

@@ -175,7 +175,7 @@ def test_a_stratum_of_a_disc_of_atoms() -> None:
     assert b.max() < 3e-20
     assert len(set(b)) == inner.sum()
     # The recoil angle is (π − ψ)/2 = atan(b/κ): relative precision at the end where π − ψ vanishes.
-    assert events["recoil_angle"][inner] == pytest.approx(b / kappa, rel=1e-14)
+    assert events["recoil_angle"][inner] == pytest.approx(b / kappa, rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize("beam", BEAMS[:3], ids=repr)
