@@ -35,7 +35,7 @@ def Custom(  # noqa: N802
     tolerance: float | None = None,
     parameters: ParameterValues | None = None,
 ) -> Potential:
-    """A potential of one's own: a formula, compiled once and run by the core, or any function, sampled in a range.
+    """A custom potential: a formula, compiled once and run by the core, or any function, sampled in a range.
 
     Parameters
     ----------

@@ -206,7 +206,7 @@ class Framed(ABC):
         return self._like(particles, forces, later, lambda part: part.rescaled(**scales))
 
     def reversed(self) -> Self:
-        """The scene with every velocity, shape (N, 3), turned round: run on, it retraces its path.
+        """The scene with every velocity, shape (N, 3), reversed: its run retraces the path.
 
         Returns
         -------

@@ -117,7 +117,7 @@ class FramedBodies:
         )
 
     def reversed(self) -> RigidBodies:
-        """The bodies with their velocities and spins, shape (K, 3), turned round.
+        """The bodies with their velocities and spins, shape (K, 3), reversed.
 
         Returns
         -------

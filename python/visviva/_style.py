@@ -56,7 +56,7 @@ _WIDE = 0.5
 
 @known_keywords
 def plot_style() -> dict[str, object]:
-    """Give the settings of matplotlib by which a figure of one's own looks like those of the package.
+    """Give the matplotlib settings that make your own figures look like those of the package.
 
     Its colors are Okabe and Ito's, which color-blind readers tell apart; after them lines differ by their dashes.
 

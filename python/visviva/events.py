@@ -311,7 +311,7 @@ def function(
     direction: EventDirection = 0,
     terminal: bool | int = False,
 ) -> Event:
-    """A function of one's own passes zero.
+    """Your own function passes zero.
 
     It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
     times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them.

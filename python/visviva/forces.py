@@ -133,7 +133,7 @@ class Force(Declared):
         return type(self)(**(self._values() | turned)) if turned else self
 
     def reversed(self) -> Self:
-        """The force under which bodies with their velocities turned round retrace their path.
+        """The force under which bodies with reversed velocities retrace their path.
 
         Returns
         -------

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
 class RadialMotion(Record):
-    """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of what was asked.
+    """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of the arguments.
 
     Units: those of the caller, one consistent system; angles in radians.
 
