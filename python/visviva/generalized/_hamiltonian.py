@@ -11,6 +11,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
 from visviva.generalized._fixed_points import fixed_points
+from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
@@ -29,7 +30,7 @@ __all__ = ["Hamiltonian"]
 
 
 @known_keywords
-class Hamiltonian(GeneralizedSystem):
+class Hamiltonian(GeneralizedSystem, SmallMotions):
     """A system by its Hamiltonian H(q, p, t).
 
     Units: those of the system, which are those of its parameters; angles in radians.
