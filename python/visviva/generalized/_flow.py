@@ -206,6 +206,15 @@ class Flow:
         InvalidInput
             As `flow_jacobian`.
 
+        Notes
+        -----
+        Lengths of small differences are √Σδ² of the numbers of the state as they are: places and velocities (momenta of
+        a Hamiltonian), in their units, whatever the mass matrix. Another norm, other units, or momenta for velocities
+        change an exponent over a time T by at most the logarithm of the ratios of the norms at both ends over T: not
+        what it tends to while the motion keeps to where those are bounded. Exponents of a Hamiltonian without further
+        forces add up to 0; those of a Lagrangian to ln(det M(start) / det M(end)) / T of the mass matrix M, which
+        tends to it.
+
         References
         ----------
         G. Benettin, L. Galgani, A. Giorgilli & J.-M. Strelcyn, Meccanica 15 (1980) 9.

@@ -10,6 +10,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
+from visviva.generalized._equations import HamiltonsEquations, hamiltons_equations
 from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
@@ -113,8 +114,8 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         return float(self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0, n])
 
     @property
-    def equations(self) -> tuple[list[sympy.Expr], list[sympy.Expr]]:
-        """q̇ and ṗ as expressions of SymPy.
+    def equations(self) -> HamiltonsEquations:
+        """q̇ and ṗ as expressions of SymPy, further forces among them; ``print`` and notebooks show equations.
 
         Examples
         --------
@@ -122,7 +123,7 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         >>> vv.systems.henon_heiles().equations
         ([p_x, p_y], [-2*x*(y + 1/2), -x**2 + y**2/3 - 2*y*(1/2 - y/3)])
         """
-        return self._shown("conjugates"), self._shown("slopes")
+        return hamiltons_equations(self)
 
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian of the system, at the same state.
