@@ -50,7 +50,7 @@ def test_a_function_of_an_oscillator(size: float) -> None:
     assert found.action_variable() == pytest.approx(action, rel=EXACT)
 
 
-@pytest.mark.parametrize("amplitude", [0.01, 2.0, 20.0])
+@pytest.mark.parametrize("amplitude", [0.01, 2.0, 20.0, 200.0])
 def test_a_relativistic_oscillator(amplitude: float) -> None:
     """√(1 + p²) + q²/2: at q = a sin s, p² = u (u + 2) with u = a² cos² s / 2."""
 
@@ -59,7 +59,7 @@ def test_a_relativistic_oscillator(amplitude: float) -> None:
             u = (amplitude * mpmath.cos(s)) ** 2 / 2
             return integrand(s, u)
 
-        parts = [mpmath.pi / 2 * k / 8 for k in range(9)]
+        parts = [mpmath.pi / 2 * (1 - mpmath.mpf(2) ** -k) for k in range(16)] + [mpmath.pi / 2]
         return float(4 * mpmath.quad(at, parts))
 
     found = moving(relativistic, amplitude, 0.0)
@@ -125,6 +125,18 @@ def test_what_has_no_period_is_refused() -> None:
         free.period()
     with pytest.raises(vv.InvalidInput, match="stands still"):
         moving(relativistic, 0.0, 0.0).period()
+    swing = moving(lambda q, p, t: np.sqrt(1 + p[0] ** 2) - np.cos(q[0]), 1.0, 0.0)
+    with pytest.raises(vv.InvalidInput, match="turns back"):
+        swing.period(turn=2 * np.pi)
+    with pytest.raises(vv.InvalidInput, match="after a turn"):
+        swing.at(position=[0.0], momentum=[0.5]).period(turn=2 * np.pi)
+    over = swing.at(position=[0.0], momentum=[4.0])
+    with pytest.raises(vv.InvalidInput, match="energy does not repeat"):
+        over.period(turn=3.0)
+    with pytest.raises(vv.InvalidInput, match=r"turn=2π"):
+        over.period()
+    with pytest.raises(vv.InvalidInput, match="separatrix"):
+        swing.at(position=[0.0], momentum=[np.sqrt(8.0)]).period()
     with pytest.raises(vv.InvalidInput, match="one coordinate"):
         vv.systems.henon_heiles().period()
     with pytest.raises(vv.InvalidInput, match="energy to be conserved") as refused:

@@ -11,7 +11,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import Linearization, linearization
 from visviva.generalized._equilibria import Equilibrium, equilibria
-from visviva.generalized._returns import gauge_part, oscillation_of_hamiltonian
+from visviva.generalized._returns import action_of_hamiltonian, gauge_part, period_of_hamiltonian
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -169,6 +169,9 @@ class SmallMotions:
         >>> abs(vv.systems.oscillator(k=4.0, m=1.0, position=[1.0]).period() - math.pi) < 1e-14
         True
         """
+        turn = self._checked_turn(turn)
+        if self._source.kind == "hamiltonian":
+            return period_of_hamiltonian(self, turn)
         return float(self._oscillation(turn)[2])
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
@@ -202,14 +205,18 @@ class SmallMotions:
         >>> abs(oscillator.action_variable() - oscillator.energy / 2.0) < 1e-14
         True
         """
+        turn = self._checked_turn(turn)
+        if self._source.kind == "hamiltonian":
+            return action_of_hamiltonian(self, turn)
         return float(self._oscillation(turn)[3])
 
-    def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
+    def _checked_turn(self: Any, turn: float | None) -> float | None:
         self._conserves()
         if turn is not None and not number("turn", turn):
             raise InvalidInput("turn", "expected how far the coordinate goes in a period, as 2π, got 0")
-        if self._source.kind == "hamiltonian":
-            return oscillation_of_hamiltonian(self, turn)
+        return None if turn is None else number("turn", turn)
+
+    def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
         low, high, period, action = self._model.oscillation(self.t0, self._start(), self._values, turn)
         return low, high, period, action if turn is None else action + gauge_part(self, turn)
 
