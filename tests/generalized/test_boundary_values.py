@@ -104,3 +104,8 @@ def test_a_double_pendulum_from_a_wild_start(seed: int) -> None:
     random = np.random.default_rng(seed)
     velocity, place = list(random.normal(size=2) * 3), list(random.normal(size=2) * 1.5)
     arrives(vv.systems.double_pendulum(position=[0.1, 0.2], velocity=velocity), 1.5, place, within=1e-9)
+
+
+def test_no_time_to_arrive_is_refused() -> None:
+    with pytest.raises(vv.InvalidInput, match="another time than the start"):
+        vv.systems.pendulum(position=[0.1]).boundary_value(0.0, [0.4])

@@ -52,6 +52,8 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
     """Give the system with the velocities (or momenta) that lead to a place at a time."""
     refuse_kinks(system)
     goal = float_array("position", position, (len(system.coordinates),))
+    if t == system.t0:
+        raise InvalidInput("t", f"expected another time than the start, {system.t0:g}")
     shooting = _Shooting(system, t, goal, rtol)
     found = shooting.newton(system._second, t)
     if found is None:

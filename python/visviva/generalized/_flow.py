@@ -264,7 +264,7 @@ class Flow:
         Raises
         ------
         InvalidInput
-            For constraints, absolute values, or more than 16 coordinates.
+            For constraints, absolute values, more than 16 coordinates, or the time of the start.
         ConvergenceError
             If no such motion is found; its message tells how near the nearest came, and whether the places are
             conjugate to each other.

@@ -126,18 +126,20 @@ def _return_time(system: Hamiltonian, start: NDArray[np.float64], turn: float | 
     rates = _rates(system, start)
     span = _shortest_time(system, start, rates)
     far = np.zeros(2) if turn is None else np.array([turn, 0.0])
+    why = ""
     for _ in range(_DOUBLINGS):
         span *= 2.0
         try:
             times, states, sizes = _crossings(system, start, rates, far, forward * span)
-        except ConvergenceError:
+        except ConvergenceError as error:
+            why = f" ({error})"
             break
         same = (np.abs(states - start - far) <= _SAME * sizes).all(axis=1) & (np.abs(times) > 1e-3 * _SAME * span)
         if same.any():
             return float(abs(times[np.argmax(same)]))
     if turn is None:
-        raise InvalidInput("position", f"the motion does not come back to its start; {_OF_A_ROTATION}")
-    raise InvalidInput("turn", f"the motion does not come to its start after a turn; {_OF_AN_OSCILLATION}")
+        raise InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}")
+    raise InvalidInput("turn", f"the motion does not come to its start after a turn{why}; {_OF_AN_OSCILLATION}")
 
 
 def _crossings(
