@@ -165,7 +165,7 @@ SECOND = (-0.8, 0.6, 0.0)
 
 
 def start(mu: float, e: float, q: float, anomaly: float) -> tuple[list[float], list[float]]:
-    """A binary64 state near true anomaly `anomaly` of the conic (mu > 0) with pericentre distance q."""
+    """A binary64 state near true anomaly `anomaly` of the conic (mu > 0) with pericenter distance q."""
     p = q * (1 + e)
     radius = p / (1 + e * math.cos(anomaly)) if anomaly != math.pi else q * (1 + e) / (1 - e)
     speed = math.sqrt(mu / p)
@@ -227,7 +227,7 @@ def grid() -> list[dict[str, Any]]:
         cases.append(case("golden", mu, r, v, t))
     for v in ([0.2, -0.3, 0.9], [-1.0, 0.0, 0.0]):
         cases += [case("free", 0.0, [1.0, 0.0, -2.0], v, span) for span in (1e-20, 1.0, -1e6)]
-    # Near-radial: the pericentre is 1e-12 … 1e-24 of the distance.
+    # Near-radial: the pericenter is 1e-12 … 1e-24 of the distance.
     for transverse in (1e-6, 1e-9, 1e-12):
         cases += [
             case("near-radial", 1.0, [2.0, 0.0, 0.0], [0.0, transverse, 0.0], t)

@@ -25,7 +25,7 @@ half, one = mpf(1) / 2, mpf(1)
 
 
 def composition(weights: Row) -> Table:
-    """Kick-drift-kick leapfrogs of these lengths, neighbouring half kicks merged."""
+    """Kick-drift-kick leapfrogs of these lengths, neighboring half kicks merged."""
     padded = [mpf(0), *weights, mpf(0)]
     return {
         "KICKS": [(left + right) / 2 for left, right in pairwise(padded)],
@@ -34,7 +34,7 @@ def composition(weights: Row) -> Table:
 
 
 def position_first(weights: Row) -> Table:
-    """Drift-kick-drift leapfrogs of these lengths, neighbouring half drifts merged."""
+    """Drift-kick-drift leapfrogs of these lengths, neighboring half drifts merged."""
     padded = [mpf(0), *weights, mpf(0)]
     return {
         "KICKS": [mpf(0), *weights, mpf(0)],

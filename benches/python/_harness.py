@@ -2,7 +2,7 @@
 
 The one idea: a ratio of two minima taken in turns on one machine. Machines are noisy and noise only ever
 adds, so the least of several repeats is what the code costs; taking the sides in turns exposes both to the
-same neighbours. A missed bar is printed like a met one.
+same neighbors. A missed bar is printed like a met one.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Direct gravity, float64: nanoseconds per ordered pair against REBOUND's ``gravity="basic"``.
 
 Both sides advance the same bodies by leapfrog with a step so short that nothing moves; what is timed is
-force evaluations. Runs are short and many: a neighbour on the machine spoils a long one for sure. Run with
+force evaluations. Runs are short and many: a neighbor on the machine spoils a long one for sure. Run with
 ``--rows`` for the tier in force only.
 """
 

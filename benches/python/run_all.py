@@ -47,7 +47,7 @@ def main() -> int:
     head = (
         "# Results\n\nWritten by `python benches/python/run_all.py` "
         f"on {datetime.now(UTC):%Y-%m-%d}. Both sides of every row ran in turns in one run; least of several "
-        "repeats. Ratios are what counts: the machine has neighbours.\n"
+        "repeats. Ratios are what counts: the machine has neighbors.\n"
     )
     (HERE / "RESULTS.md").write_text("\n".join([head, *sections]))
     return failed

@@ -48,8 +48,8 @@ def scenes(quick: bool) -> dict[str, tuple[vv.Scene, float, float]]:
         "solar": (vv.problems.outer_solar_system().scene, 4000.0, 10.0),
         "five and three massless": (vv.Scene(cloud(8, 3), vv.Gravity(1.0, softening=0.1)), 1.0, 0.02),
         "37 bodies": (vv.Scene(cloud(37), vv.Gravity(1.0, softening=0.05)), 0.5, 0.02),
-        "Yukawa centre": (vv.Scene(far, yukawa), 3.0, 0.01),
-        "Lennard-Jones centre in a uniform field": (
+        "Yukawa center": (vv.Scene(far, yukawa), 3.0, 0.01),
+        "Lennard-Jones center in a uniform field": (
             vv.Scene(far, lennard_jones, vv.UniformField([0.0, 0.0, -0.1])),
             2.0,
             0.01,
@@ -67,7 +67,7 @@ def closed_forms() -> dict[str, vv.Scene]:
         "free": vv.Scene(one),
         "uniform": vv.Scene(one, vv.UniformField([0.0, 0.3, -9.81])),
         "Kepler e = 0.9": vv.problems.kepler(e=0.9).scene,
-        "repulsive centre": vv.Scene(one, vv.CentralField(vv.potentials.Coulomb(k=3.0))),
+        "repulsive center": vv.Scene(one, vv.CentralField(vv.potentials.Coulomb(k=3.0))),
     }
 
 

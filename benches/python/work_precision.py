@@ -181,7 +181,7 @@ def page(sections: list[str], rows: list[Row], load: str, folder: Path) -> None:
         f"Written with its pictures by `{command}`. {machine()} {load}",
         "What is timed is the integration alone, the least of several runs; errors are those of places at the end, "
         "against references beyond double precision. Lines are those methods of each package that are its fastest to "
-        "some error: ours with full marks, peers dashed with open ones, the fastest of all in grey. Tables have every "
+        "some error: ours with full marks, peers dashed with open ones, the fastest of all in gray. Tables have every "
         "method; — is what was not reached.",
     ]
     table = "\n".join(["| what | visviva | peer | ratio | bar | |", "|---|---|---|---|---|---|", *map(str, rows)])

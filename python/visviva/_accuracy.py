@@ -42,8 +42,8 @@ def _callers_inside() -> int:
     return depth
 
 
-def judge(result: dict[str, Any], *, ensemble: bool) -> None:
-    """Warn of a step longer than the run, of events that cannot be, and of an energy error out of all proportion."""
+def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool) -> None:
+    """Warn of a step longer than the run, events without zeros, and an energy error out of all proportion."""
     for place in result.pop("without_numbers", ()):
         message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
@@ -86,10 +86,12 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) 
     power = 1.0 / (order if error < _UNRESOLVED else min(order, _LOW_ORDER))
     longest = min(dt, result.get("dt_beyond", (dt, dt))[1])
     named = f"dt = {float(f'{0.5 * longest * (_WANTED / min(error, _BLOWN_UP)) ** power:.0e}'):g}"
-    told = f"a step of dt = {dt:g} does not resolve this motion; "
+    problem = f"a step of dt = {dt:g} does not resolve this motion; "
     if error < _UNRESOLVED:
-        return f"{told}try {named}, or an adaptive method (verner98)"
-    return f"{told}try an adaptive method (verner98), which finds the steps that close bodies take, or at most {named}"
+        return f"{problem}try {named}, or an adaptive method (verner98)"
+    return (
+        f"{problem}try an adaptive method (verner98), which finds the steps that close bodies take, or at most {named}"
+    )
 
 
 def judge_energies(dt: float, energies: NDArray[np.float64], sizes: NDArray[np.float64], *, ensemble: bool) -> None:

@@ -96,7 +96,7 @@ def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> 
 def reversal(
     scene: Scene, t: float, *, method: MethodName | Method = "auto", dt: float | None = None, rtol: float = 1e-9
 ) -> float:
-    """How far from the start a run ends that goes to ``t``, is turned round, and comes back.
+    """Distance from the start after a run to ``t``, a reversal of all velocities, and a run back.
 
     Units: those of the scene; what is told is relative to its size, without dimension.
 
@@ -135,8 +135,8 @@ def reversal(
     True
     """
     _check(scene)
-    there = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
-    back = there.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
+    end = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
+    back = end.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
     return float(np.abs(back.particles.position - scene.particles.position).max(initial=0.0)) / _size(scene)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
-from visviva._declared import scaled
+from visviva._declared import unit_change
 from visviva._keywords import known_keywords, refuse_subclass
 from visviva._moves import displacement, orthogonal
 from visviva._names import body_index
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
     from numpy.typing import ArrayLike
 
-__all__ = ["BodyForce", "Vector", "body_of", "keep", "not_negative", "vector"]
+__all__ = ["BodyForce", "Vector", "body_of", "not_negative", "set_frozen", "vector"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -56,7 +56,7 @@ class BodyForce:
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
-        refuse_subclass(cls, "a torque of one's own is a CompiledTorque")
+        refuse_subclass(cls, "a custom torque is a CompiledTorque")
 
     def _values(self) -> dict[str, Any]:
         return {each.name: getattr(self, each.name) for each in fields(cast("DataclassInstance", self))}
@@ -92,7 +92,7 @@ class BodyForce:
             )
         known = {"bodies": bodies, "particles": particles}
         given = {name: (getattr(self, name), *known[of]) for name, of in self._bodies.items()}
-        return self._with(**{name: _found(name, *each) for name, each in given.items() if each[0] is not None})
+        return self._with(**{name: _checked_index(name, *each) for name, each in given.items() if each[0] is not None})
 
     def shifted(self, position: ArrayLike, velocity: ArrayLike) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
@@ -199,12 +199,12 @@ class BodyForce:
         scales = tuple(positive(unit, scale, "number of new units per old one") for unit, scale in named)
         new = {}
         for name, powers in self._dimensions.items():
-            change, old = scaled(name, powers, scales), getattr(self, name)
+            change, old = unit_change(name, powers, scales), getattr(self, name)
             new[name] = tuple(map(change, old)) if isinstance(old, tuple) else old if old is None else change(old)
         return self._with(**new)
 
 
-def keep(force: BodyForce, **values: Any) -> None:
+def set_frozen(force: BodyForce, **values: Any) -> None:
     """Set the values of a frozen force, when it is made."""
     for name, value in values.items():
         object.__setattr__(force, name, value)
@@ -229,7 +229,7 @@ def body_of(name: str, value: object) -> int | str | None:
     return value if value is None or isinstance(value, str) else whole_number(name, value, low=0)
 
 
-def _found(argument: str, value: object, names: tuple[str, ...], count: int) -> int:
+def _checked_index(argument: str, value: object, names: tuple[str, ...], count: int) -> int:
     """The index of a body that is there."""
     what = "particles" if argument == "particle" else "rigid bodies"
     if not count:

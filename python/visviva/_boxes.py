@@ -74,11 +74,11 @@ def boxes(trajectory: Trajectory, bodies: Sequence[int]) -> NDArray[np.float64] 
             moments, axes = rigid.moments[at], np.eye(3)
         else:
             moments, axes = np.linalg.eigh(np.asarray(rigid.inertia)[at])
-        way = (_OUTLINE * half_edges(moments, float(rigid.mass[at]))) @ axes.T
+        outline = (_OUTLINE * half_edges(moments, float(rigid.mass[at]))) @ axes.T
         gap = np.full((1, 3), np.nan)
         if rigid.pivoted[at] and rigid.pivot is not None:
-            way = np.concatenate([way, gap, np.zeros((1, 3)), rigid.pivot[at][None]])
-        turned = np.concatenate([way, gap]) @ np.swapaxes(matrix(trajectory.orientation[:, at]), -1, -2)
+            outline = np.concatenate([outline, gap, np.zeros((1, 3)), rigid.pivot[at][None]])
+        turned = np.concatenate([outline, gap]) @ np.swapaxes(matrix(trajectory.orientation[:, at]), -1, -2)
         lines.append(turned + trajectory.position[:, body, None])
     return np.concatenate(lines, axis=1) if lines else None
 
@@ -91,10 +91,10 @@ def animate_turning(motion: FreeRotation | BodyTurning, path: Any, plane: object
     turns = matrix(motion.orientation[order])
     half = half_edges(motion.moments, 1.0)
     # The corners on the unit sphere, as the ends of the axes are.
-    way = _OUTLINE * half / np.linalg.norm(half)
+    outline = _OUTLINE * half / np.linalg.norm(half)
     gap, center = np.full((1, 3), np.nan), np.zeros((1, 3))
-    ways = [way, *(each for axis in np.eye(3) for each in (gap, center, axis[None]))]
-    lines = np.concatenate(ways) @ np.swapaxes(turns, -1, -2)
+    outlines = [outline, *(each for axis in np.eye(3) for each in (gap, center, axis[None]))]
+    lines = np.concatenate(outlines) @ np.swapaxes(turns, -1, -2)
     tips = np.swapaxes(turns, -1, -2)
     shown = directions(tips, "xyz" if plane is None else plane)
     return animate_places(Places(motion.t[order], tips, ("x", "y", "z"), lines), path, shown=shown, **how)

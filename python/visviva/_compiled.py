@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Compiled", "compiled", "sampled"]
+__all__ = ["Compiled", "compiled", "sampler"]
 
 _SIGNATURE = "void f(double t, const double *y, double *rate), with void *data at the end or without"
 _FUNCTION: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]  # ctypes names it with an underscore
@@ -67,7 +67,7 @@ def compiled(fun: Any, args: object) -> Compiled | None:
     return None
 
 
-def of_distance(function: Any) -> Callable[[float], float] | None:
+def function_of_distance(function: Any) -> Callable[[float], float] | None:
     """Give the compiled function ``double f(double r)`` that this is, or None for a function of Python.
 
     Raises
@@ -83,7 +83,7 @@ def of_distance(function: Any) -> Callable[[float], float] | None:
     return compiled
 
 
-def of_orientation(function: Any) -> int:
+def torque_address(function: Any) -> int:
     """Give the address of a compiled function of the time, a quaternion and an angular velocity that writes a torque.
 
     Raises
@@ -127,7 +127,7 @@ def _can_be_called(address: int | None) -> TypeGuard[int]:
     return address is not None and 1 << 16 <= address < 1 << 8 * ctypes.sizeof(ctypes.c_void_p)
 
 
-def sampled(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def sampler(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     """Give what samples a function of ``of``, compiled or of Python, at an array.
 
     Raises
@@ -135,7 +135,7 @@ def sampled(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[n
     InvalidInput
         For what is no function; when it is called, for results that are no real numbers of the shape of the array.
     """
-    compiled = of_distance(function)
+    compiled = function_of_distance(function)
     if compiled is None and not callable(function):
         raise InvalidInput(
             "function", f"expected a function of {of}, or a compiled double f(double), got {type(function).__name__}"

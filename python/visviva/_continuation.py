@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from visviva import _core
     from visviva.runnable import Runnable
 
-__all__ = ["ARRAYS", "SHARED", "attached", "left_behind", "of_copies", "turning"]
+__all__ = ["ARRAYS", "SHARED", "continuation_after", "continuation_of_copies", "turning", "with_continuation"]
 
 _Start = TypeVar("_Start", bound="Runnable[Any]")
 
@@ -24,7 +24,7 @@ SHARED = ("form", "method", "dt", "t0")
 ARRAYS = ("position", "velocity", "orientation", "angular_velocity", "held")
 
 
-def left_behind(start: _core._Scene, result: dict[str, Any]) -> _core._Continuation | None:
+def continuation_after(start: _core._Scene, result: dict[str, Any]) -> _core._Continuation | None:
     """What the run of `start` left behind; None if its copies did not end on one node."""
     shared, last = result.get("continuation"), result["final"]
     if shared is None:
@@ -49,7 +49,7 @@ def turning(begun: Any, copies: int) -> dict[str, Any]:
     return {name: np.zeros((copies, 0, width)) if begun is None else begun[name] for name, width in widths.items()}
 
 
-def of_copies(continuation: _core._Continuation | None, rows: slice) -> _core._Continuation | None:
+def continuation_of_copies(continuation: _core._Continuation | None, rows: slice) -> _core._Continuation | None:
     """That of some of the copies."""
     if continuation is None:
         return None
@@ -61,7 +61,7 @@ def of_copies(continuation: _core._Continuation | None, rows: slice) -> _core._C
     return kept
 
 
-def attached(scene: _Start, continuation: _core._Continuation | None) -> _Start:
+def with_continuation(scene: _Start, continuation: _core._Continuation | None) -> _Start:
     """The scene, which was just made and is in that state, with it."""
     scene._keywords["continuation"] = continuation
     return scene

@@ -15,7 +15,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import whole_number
-from visviva._executors import answers, checked_executor
+from visviva._executors import checked_executor, results_in_order
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.request import execute, finished
@@ -53,7 +53,7 @@ def gathered(
     home: list[dict[str, Any]] = []
     with callback(progress, "copies") as report:
         try:
-            with closing(answers(executor, work, calls)) as coming:
+            with closing(results_in_order(executor, work, calls)) as coming:
                 for came, end in zip(coming, bounds[1:], strict=True):
                     home.append(came)
                     if report is not None:

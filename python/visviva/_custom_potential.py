@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.potentials import Potential
     from visviva.typing import CompiledFunction, ParameterValues
 
-__all__ = ["Custom", "written"]
+__all__ = ["Custom", "formula_of"]
 
 
 @known_keywords
@@ -35,7 +35,7 @@ def Custom(  # noqa: N802
     tolerance: float | None = None,
     parameters: ParameterValues | None = None,
 ) -> Potential:
-    """A potential of one's own: a formula, compiled once and run by the core, or any function, sampled in a range.
+    """A custom potential: a formula, compiled once and run by the core, or any function, sampled in a range.
 
     Parameters
     ----------
@@ -87,8 +87,8 @@ def Custom(  # noqa: N802
     >>> bool(sampled.error <= 1e-12), round(float(sampled.force(1.0)), 9)
     (True, 0.707106781)
     """
-    from visviva._compiled import of_distance as compiled
-    from visviva._compiled import sampled
+    from visviva._compiled import function_of_distance as compiled
+    from visviva._compiled import sampler
     from visviva.potentials import PiecewisePolynomial
 
     if r_min is None and r_max is None and (hasattr(function, "free_symbols") or compiled(function) is None):
@@ -102,12 +102,12 @@ def Custom(  # noqa: N802
             raise InvalidInput(name, "expected the end of the range in which the function is sampled, got None")
     low, high = number("r_min", r_min), number("r_max", r_max)
     met = 1e-12 if tolerance is None else number("tolerance", tolerance)
-    breaks, coefficients, error = _core.fitted(sampled(function, "r"), (low, high), met, drag=False)
+    breaks, coefficients, error = _core.fitted(sampler(function, "r"), (low, high), met, drag=False)
     return PiecewisePolynomial(breaks, coefficients, error)
 
 
 def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, float] | None) -> Potential:
-    from visviva._expression_table import of_distance
+    from visviva._expression_table import distance_table
     from visviva.potentials import Expressed
 
     if tolerance is not None:
@@ -117,7 +117,7 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     if not hasattr(function, "free_symbols") and not callable(function):
         raise InvalidInput("function", f"expected a formula or a function of r, got {type(function).__name__}")
     try:
-        nodes, values = of_distance(function, parameters)
+        nodes, values = distance_table(function, parameters)
     except InvalidInput as error:
         if isinstance(error, MissingPackage) or error.argument.startswith("parameters"):
             raise
@@ -130,14 +130,11 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     return Expressed(nodes, values)
 
 
-def written(made: Any) -> str:
+def formula_of(potential: Any) -> str:
     """The formula of an `Expressed`, the values of its parameters, and its units where they are of its own."""
-    from visviva._expression_table import formula, parameter_names
+    from visviva._expression_table import formulas, parameter_values
 
-    # A table that was written by hand may do without names.
-    names = parameter_names(made.nodes)
-    names += tuple(f"values[{index}]" for index in range(len(names), len(made.values)))
-    values = dict(zip(names, made.values.tolist(), strict=False))
-    units = {name: getattr(made, name) for name in ("length", "energy") if getattr(made, name) != 1.0}
-    told = [formula(made.nodes, ("r",), names), *(f"{name}={value!r}" for name, value in (values | units).items())]
-    return f"Expressed({', '.join(told)})"
+    values = parameter_values(potential.nodes, potential.values.tolist())
+    units = {name: getattr(potential, name) for name in ("length", "energy") if getattr(potential, name) != 1.0}
+    (written,) = formulas(potential.nodes, ("r",), tuple(values))
+    return f"Expressed({', '.join([written, *(f'{name}={value!r}' for name, value in (values | units).items())])})"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from visviva.potentials import Potential
 
-__all__ = ["Declared", "Parameter", "checked_potential", "make", "scaled", "wrapped"]
+__all__ = ["Declared", "Parameter", "checked_potential", "class_from_entry", "unit_change", "wrapped"]
 
 _VECTORS = ("vector", "axial_vector", "direction", "point")
 _QUANTITIES = ("number", "numbers", *_VECTORS)  # what has a dimension, and says so where it is none
@@ -243,13 +243,13 @@ class Declared:
             if parameter.kind == "potential":
                 value = value.rescaled(length=length, mass=mass, time=time)
             elif parameter.kind not in ("indices", "choice") and any(powers):
-                factor = scaled(name, powers, scales)
+                factor = unit_change(name, powers, scales)
                 value = _each(value, factor)
             new[name] = value
         return type(self)(**new)
 
 
-def make(entry: dict[str, Any], base: type[Any], module: str, namespace: dict[str, Any]) -> type[Any]:
+def class_from_entry(entry: dict[str, Any], base: type[Any], module: str, namespace: dict[str, Any]) -> type[Any]:
     """The class of an entry of the registry."""
     parameters = tuple(Parameter(**(row | {"choices": tuple(row["choices"])})) for row in entry["parameters"])
     made = make_dataclass(
@@ -288,7 +288,7 @@ def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...]) -> str:
         "Raises",
         "------",
         "visviva.InvalidInput",
-        "    If a parameter is not what is said above, or not finite.",
+        "    If a parameter is not as described above, or not finite.",
     ]
     lines += ["", "References", "----------", entry["source"] + "."]
     lines += ["", "Examples", "--------", ">>> import visviva as vv", *entry["example"].splitlines()]
@@ -306,7 +306,7 @@ def _dimension(powers: tuple[int, ...]) -> str:
     return f"{above} / ({below})" if "·" in below else f"{above} / {below}"
 
 
-def scaled(name: str, powers: tuple[float, float, float], scales: tuple[float, ...]) -> Callable[[float], float]:
+def unit_change(name: str, powers: tuple[float, float, float], scales: tuple[float, ...]) -> Callable[[float], float]:
     """What brings a number of the dimension length^p mass^q time^r to other units, rounded once if p, q, r are whole.
 
     The product is exact: scales of 1e±150 that together make a moderate factor do not overflow or vanish on the way.

@@ -19,7 +19,7 @@ __all__ = ["Throw", "throw"]
 @known_keywords
 @dataclass(frozen=True, slots=True, repr=False)
 class Throw(Record):
-    """What is told of a body thrown straight up, as plain numbers.
+    """Heights, times and speeds of a body thrown straight up, as plain numbers.
 
     Units: those of the arguments of `throw`.
 

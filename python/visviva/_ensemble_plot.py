@@ -40,7 +40,7 @@ def plot_ensemble(
     over = COLUMN_AXES[name]
     if over[:1] == ("rigid_body",) and run.ensemble.scene.rigid_bodies is None:
         raise InvalidInput("column", f"{name} is that of a rigid body, and there is none")
-    values = _of_body(run, name, body) if over and over[0] in ("body", "rigid_body") else _whole(run, name, body)
+    values = _of_body(run, name, body) if over and over[0] in ("body", "rigid_body") else _of_scene(run, name, body)
     letters, shown = components_of(name, component)
     panels = values[..., list(shown)] if letters else values[..., None]
     labels = [f"{name}, {letters[at]}" for at in shown] or [name.replace("_", " ")]
@@ -72,7 +72,7 @@ def plot_generalized(
     return _panels(run.t, values, [before + each for each in chosen], kind, ax)
 
 
-def _whole(run: EnsembleTrajectory, name: str, body: object) -> NDArray[np.float64]:
+def _of_scene(run: EnsembleTrajectory, name: str, body: object) -> NDArray[np.float64]:
     if body is not None:
         raise InvalidInput("body", f"{name} is that of the whole scene, got body={body!r}")
     values: NDArray[np.float64] = getattr(run, name)

@@ -19,7 +19,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.typing import EventDirection
 
-__all__ = ["Event", "checked_direction", "made", "sign"]
+__all__ = ["Event", "checked_direction", "direction_of", "make_event"]
 
 #: Of runs in generalized coordinates alone.
 _GENERALIZED = ("coordinate", "expression")
@@ -56,24 +56,26 @@ class Event(Record):
     terminal: int
 
     def _to_core(self) -> dict[str, Any]:
-        told = dict(self.parameters)
+        parameters = dict(self.parameters)
         if self.kind in _GENERALIZED:
             raise InvalidInput(
                 "events",
                 f"{self.kind} is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
                 "plane, and functions f(t, position, velocity)",
             )
-        if "name" in told:
-            raise InvalidInput("events", f"of the function {told['name']!r} a run keeps its name alone; give it again")
+        if "name" in parameters:
+            raise InvalidInput(
+                "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
+            )
         return {
             "kind": self.kind,
-            **told,
+            **parameters,
             "direction": float(self.direction),
             "last": self.terminal or None,
         }
 
 
-def made(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
+def make_event(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
     """The event, of which direction and end have been looked at.
 
     Raises
@@ -81,9 +83,9 @@ def made(kind: str, direction: object, terminal: object, **parameters: Any) -> E
     visviva.InvalidInput
         For a direction that is none of the three, or an end that is none.
     """
-    way = checked_direction(direction)
+    sign = checked_direction(direction)
     last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
-    return Event(kind, tuple(parameters.items()), way, last)
+    return Event(kind, tuple(parameters.items()), sign, last)
 
 
 def checked_direction(direction: object) -> EventDirection:
@@ -94,12 +96,12 @@ def checked_direction(direction: object) -> EventDirection:
     visviva.InvalidInput
         For anything but 1, -1 and 0.
     """
-    way = number("direction", direction)
-    if way not in (-1.0, 0.0, 1.0):
+    sign = number("direction", direction)
+    if sign not in (-1.0, 0.0, 1.0):
         raise InvalidInput("direction", f"expected 1 for upwards, -1 for downwards or 0 for both, got {direction!r}")
-    return sign(way)
+    return direction_of(sign)
 
 
-def sign(way: float) -> EventDirection:
+def direction_of(value: float) -> EventDirection:
     """The direction that a number tells by its sign, as that of an attribute of a function does in SciPy."""
-    return 1 if way > 0.0 else -1 if way < 0.0 else 0
+    return 1 if value > 0.0 else -1 if value < 0.0 else 0

@@ -14,7 +14,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
-__all__ = ["answers", "checked_executor"]
+__all__ = ["checked_executor", "results_in_order"]
 
 
 def checked_executor(executor: Any) -> Any:
@@ -32,15 +32,17 @@ def checked_executor(executor: Any) -> Any:
     return executor
 
 
-def answers(executor: Any, work: Callable[..., Any], parts: Sequence[tuple[Any, ...]]) -> Generator[Any, None, None]:
+def results_in_order(
+    executor: Any, work: Callable[..., Any], parts: Sequence[tuple[Any, ...]]
+) -> Generator[Any, None, None]:
     """What ``work(*part)`` gives for each part, in their order; what is not asked for any more is called off.
 
     Examples
     --------
     >>> from concurrent.futures import ThreadPoolExecutor
-    >>> from visviva._executors import answers
+    >>> from visviva._executors import results_in_order
     >>> with ThreadPoolExecutor() as executor:
-    ...     list(answers(executor, pow, [(2, 3), (3, 2)]))
+    ...     list(results_in_order(executor, pow, [(2, 3), (3, 2)]))
     [8, 9]
     """
     # A Dask client takes equal calls for one and the same; these depend on their arguments alone, so it may.

@@ -11,13 +11,13 @@ from visviva._arrays import number
 from visviva._keywords import check_call
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, called, recorded
+from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, call_with_expressions, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-__all__ = ["formula", "named", "of_distance", "parameter_names", "table"]
+__all__ = ["checked_parameters", "distance_table", "formulas", "parameter_names", "parameter_values", "table"]
 
 #: Operations by their numbers in a table; functions come after them.
 _OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
@@ -44,10 +44,17 @@ def parameter_names(numbers: Iterable[float]) -> tuple[str, ...]:
     return tuple("".join(map(chr, letters)) for operation, _, letters in _rows(numbers) if operation == _NAME)
 
 
-def formula(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> str:
-    """Write the one expression of a table as one reads it; of a long one how many nodes it has."""
+def parameter_values(numbers: Iterable[float], values: Sequence[float]) -> dict[str, float]:
+    """Give the values of the parameters by name; a table that was written by hand may do without names."""
+    names = parameter_names(numbers)
+    names += tuple(f"values[{index}]" for index in range(len(names), len(values)))
+    return dict(zip(names, values, strict=False))
+
+
+def formulas(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> list[str]:
+    """Write the expressions of a table as one reads them; where one is long, how many nodes there are."""
     numbers = list(numbers)
-    root = int(numbers[1])
+    roots = [int(root) for root in numbers[1 : 1 + int(numbers[0])]]
     rows = [row for row in _rows(numbers) if row[0] != _NAME]
     # Of each node its text and how strongly that binds; nodes are shared, so that only short texts are kept.
     texts: list[tuple[str, int]] = []
@@ -59,14 +66,16 @@ def formula(numbers: Iterable[float], variables: tuple[str, ...], parameters: tu
                 texts.append((variables[int(value)], _ATOM))
             case "parameter":
                 texts.append((parameters[int(value)], _ATOM))
+            case "time":
+                texts.append(("t", _ATOM))
             case name:
-                texts.append(_written(name, [texts[at] for at in arguments]))
+                texts.append(_operation_text(name, [texts[at] for at in arguments]))
         if len(texts[-1][0]) > _LONGEST:
-            return count(len(rows), "node")
-    return texts[root][0]
+            return [count(len(rows), "node")]
+    return [texts[root][0] for root in roots]
 
 
-def _written(operation: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
+def _operation_text(operation: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
     """The text of an operation, and how strongly it binds."""
 
     def within(argument: tuple[str, int], least: int) -> str:
@@ -112,7 +121,9 @@ def _rows(numbers: Iterable[float]) -> Iterator[tuple[int, float, list[int]]]:
         at += 3 + length
 
 
-def named(parameters: Mapping[Any, float] | None, taken: tuple[str, ...]) -> tuple[tuple[str, ...], list[float]]:
+def checked_parameters(
+    parameters: Mapping[Any, float] | None, taken: tuple[str, ...]
+) -> tuple[tuple[str, ...], list[float]]:
     """Give names and values of parameters, none of which is a name that is taken."""
     if parameters is not None and not hasattr(parameters, "items"):
         kind = type(parameters).__name__
@@ -129,24 +140,24 @@ def named(parameters: Mapping[Any, float] | None, taken: tuple[str, ...]) -> tup
     return names, values
 
 
-def of_distance(function: Any, parameters: Mapping[Any, float] | None) -> tuple[list[float], list[float]]:
+def distance_table(function: Any, parameters: Mapping[Any, float] | None) -> tuple[list[float], list[float]]:
     """Give the table of an expression of r, of SymPy or a function that is called once, and its parameters' values."""
-    names, values = named(parameters, ("r", "t"))
+    names, values = checked_parameters(parameters, ("r", "t"))
     nodes = Nodes()
     if hasattr(function, "free_symbols"):
-        root = _of_symbols(nodes, function, names)
+        root = _root_of_symbols(nodes, function, names)
     else:
         check_call("function", function, ("r",), names)
         r, *own = (
             Expression(nodes, nodes.add(operation, (), float(index)))
             for operation, index in [("variable", 0), *(("parameter", index) for index in range(len(names)))]
         )
-        result = called(nodes, "function", function, (r,), dict(zip(names, own, strict=True)))
+        result = call_with_expressions(nodes, "function", function, (r,), dict(zip(names, own, strict=True)))
         root = recorded(nodes, result, "function")
     return table(nodes, [root], names), values
 
 
-def _of_symbols(nodes: Nodes, function: Any, names: tuple[str, ...]) -> int:
+def _root_of_symbols(nodes: Nodes, function: Any, names: tuple[str, ...]) -> int:
     sp = sympy("function")
     # Symbols go by their names: what is assumed of them makes others of them.
     found = {symbol.name: symbol for symbol in function.free_symbols}

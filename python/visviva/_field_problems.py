@@ -71,7 +71,7 @@ def arenstorf() -> Problem:
 def driven_oscillator() -> Problem:
     """Two bodies on a spring in a medium that slows them, driven near resonance, for 24 periods of the drive.
 
-    Their distance is a damped oscillator of the frequency 2 and the quality factor 40, driven at 1.5; the centre of
+    Their distance is a damped oscillator of the frequency 2 and the quality factor 40, driven at 1.5; the center of
     mass is driven, too. The energy comes and goes: errors are of positions.
 
     Returns

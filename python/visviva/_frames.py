@@ -52,10 +52,15 @@ class Framed(ABC):
         position, velocity : array_like, shape (3,), optional
             By what is displaced, and boosted, in the units of the scene; nothing if not given.
 
+        Returns
+        -------
+        Scene
+            In the same units.
+
         Raises
         ------
         visviva.InvalidInput
-            For a boost of a field with a fixed centre.
+            For a boost of a field with a fixed center.
 
         References
         ----------
@@ -84,6 +89,11 @@ class Framed(ABC):
         origin : array_like, shape (3,), optional
             Where the frame's origin is at t = 0, likewise.
 
+        Returns
+        -------
+        Scene
+            With r′ and v′ = v − V, shape (N, 3), in the same units.
+
         Raises
         ------
         visviva.InvalidInput
@@ -104,7 +114,12 @@ class Framed(ABC):
         return self.shifted(position=-(float_array("origin", origin, (3,)) + frame * self.t0), velocity=-frame)
 
     def center_of_mass_frame(self) -> Self:
-        """The scene in the frame in which its centre of mass rests at the origin.
+        """The scene in the frame in which its center of mass rests at the origin.
+
+        Returns
+        -------
+        Scene
+            In the same units; its total momentum is zero but for rounding.
 
         References
         ----------
@@ -127,6 +142,11 @@ class Framed(ABC):
         ----------
         rotation : array_like, shape (3, 3)
             The matrix, without dimension; of determinant −1 a reflection.
+
+        Returns
+        -------
+        Scene
+            In the same units, with every vector R·r.
 
         Raises
         ------
@@ -158,6 +178,11 @@ class Framed(ABC):
         length, mass, time : float, optional
             How many new units make one old unit, positive. Powers of two change no bit of any mantissa.
 
+        Returns
+        -------
+        Scene
+            The same motion, every number in the new units.
+
         Raises
         ------
         visviva.InvalidInput
@@ -181,7 +206,12 @@ class Framed(ABC):
         return self._like(particles, forces, later, lambda part: part.rescaled(**scales))
 
     def reversed(self) -> Self:
-        """The scene with every velocity, shape (N, 3), turned round: run on, it retraces its path.
+        """The scene with every velocity, shape (N, 3), reversed: its run retraces the path.
+
+        Returns
+        -------
+        Scene
+            In the same units, with −v, shape (N, 3), and every force reversed.
 
         Raises
         ------
@@ -223,6 +253,11 @@ class Framed(ABC):
             Quaternions (x, y, z, w) of the rigid bodies; as they are if not given.
         angular_velocity : array_like, shape (K, 3), optional
             Along their axes, in radians per time; as they are if not given.
+
+        Returns
+        -------
+        Scene
+            In the same units, with the same forces.
 
         Raises
         ------

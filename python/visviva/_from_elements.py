@@ -57,7 +57,7 @@ def from_elements(
     given: dict[str, Any],
 ) -> Particles:
     """`Particles.from_elements`; `given` has the mass and the elements by name, None for what was not given."""
-    there = _there(make, central)
+    placed = _there(make, central)
     size = _one_of(given, _SIZES)
     if size is None:
         raise InvalidInput("semi_major_axis", f"expected the size of the orbits: one of {', '.join(_SIZES)}")
@@ -71,16 +71,16 @@ def from_elements(
     if (of["mass"] < 0.0).any():
         raise InvalidInput("mass", f"expected masses of at least 0, got {of['mass'].min()}; 0 marks a test particle")
     count = len(of["mass"])
-    all_names = _all_names(there, central, names, count)
-    parents = _parents(about, len(there.mass), count, all_names)
-    inside = _attracting(there, of["mass"], parents)
+    all_names = _all_names(placed, central, names, count)
+    parents = _parents(about, len(placed.mass), count, all_names)
+    inside = _attracting(placed, of["mass"], parents)
     with np.errstate(over="ignore"):
         mu = number("G", G) * (inside + of["mass"])
-    _check_mu(mu, all_names[-count:], len(there.mass))
+    _check_mu(mu, all_names[-count:], len(placed.mass))
     r, v = _relative(mu, of, size, direction, place, number("t0", t0))
-    mass, position, velocity = _put(there, of["mass"], parents, r, v)
+    mass, position, velocity = _put(placed, of["mass"], parents, r, v)
     own = radius_array(given["radius"], (count,), {"N": (count, size)})
-    return make(mass, position, velocity, all_names or None, [*there.radius, *own.tolist()])
+    return make(mass, position, velocity, all_names or None, [*placed.radius, *own.tolist()])
 
 
 def _there(make: Callable[..., Particles], central: Any) -> _Bodies:
@@ -250,7 +250,7 @@ def _put(
 
 
 def _center(there: _Bodies) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Place and velocity of the centre of mass of the bodies that are there, and their mass; their mean if none has."""
+    """Place and velocity of the center of mass of the bodies that are there, and their mass; their mean if none has."""
     from visviva.particles import weighted_mean
 
     total = fsum(there.mass)

@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Record", "Sheet", "Shown", "as_html", "as_text", "briefly", "first_rows"]
+__all__ = ["Record", "Sheet", "Shown", "as_html", "as_text", "brief_tuple", "briefly", "first_rows"]
 
 # Rows of a long table that are shown; the rest are counted.
 _ROWS = 12
@@ -115,6 +115,19 @@ def briefly(value: object) -> str:
     if isinstance(value, tuple) and len(value) > _ITEMS and not hasattr(value, "_fields"):
         return f"<{len(value)}: {', '.join(str(each) for each in value[:2])}, …>"
     return " ".join(repr(value).split())
+
+
+def brief_tuple(record: Any) -> str:
+    """The ``repr`` of a named tuple, in one line however much its fields hold.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> vv.scattering.CrossSection(np.array([1.0, 2.0]), np.arange(100.0))
+    CrossSection(value=array([1., 2.]), error=<(100,) from 0 to 99>)
+    """
+    named = zip(record._fields, record, strict=True)
+    return f"{type(record).__name__}({', '.join(f'{name}={briefly(value)}' for name, value in named)})"
 
 
 def as_html(sheet: Sheet | str) -> str:

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["joined"]
+__all__ = ["joined_result"]
 
 
-def joined(parts: list[dict[str, Any]], asked: list[int]) -> dict[str, Any]:
+def joined_result(parts: list[dict[str, Any]], asked: list[int]) -> dict[str, Any]:
     """The result of the whole, of so many output times of each part; the last state is that of the last part."""
     first, last = parts[0], parts[-1]
     rows = [slice(0, number) for number in asked[: len(parts)]]
@@ -29,13 +29,13 @@ def joined(parts: list[dict[str, Any]], asked: list[int]) -> dict[str, Any]:
     # What another run goes on with is told from where the first part began: if all went on with the one before.
     chain = all(part.get("continuation", {}).get("goes_on") for part in parts[1:])
     if chain and "continuation" in last:
-        begun = first.get("continuation", last["continuation"])["goes_on"]
-        result["continuation"] = {**last["continuation"], "goes_on": begun}
+        goes_on = first.get("continuation", last["continuation"])["goes_on"]
+        result["continuation"] = {**last["continuation"], "goes_on": goes_on}
     else:
         for name in ("held", "node", "begun_position", "begun_velocity"):
             result["final"].pop(name, None)
     for name in ("energy_error", "dt_beyond", "too_long"):
-        told = [part[name] for part in parts if name in part]
-        if told:
-            result[name] = told[-1]
+        values = [part[name] for part in parts if name in part]
+        if values:
+            result[name] = values[-1]
     return result

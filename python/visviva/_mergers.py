@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
     from visviva.trajectory import Trajectory
 
-__all__ = ["by_era", "eras", "hosts", "merged", "parts_and_masses"]
+__all__ = ["by_era", "eras", "has_mergers", "hosts", "parts_and_masses"]
 
 
 def hosts(bodies: Particles) -> NDArray[np.int64] | None:
@@ -38,7 +38,7 @@ def hosts(bodies: Particles) -> NDArray[np.int64] | None:
     return found if (found != np.arange(len(bodies))).any() else None
 
 
-def merged(run: Any) -> bool:
+def has_mergers(run: Any) -> bool:
     """Whether bodies of a run have merged."""
     return bool((run._result.get("collisions", {"survivor": np.zeros(0)})["survivor"] >= 0).any())
 
@@ -49,7 +49,7 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
 
     bodies = run.scene.particles
     parts = hosts(bodies) if run._result.get("collisions") else None
-    if parts is None and not merged(run):
+    if parts is None and not has_mergers(run):
         yield slice(0, len(run.t)), run.scene, None
         return
     table = run._result["collisions"]
@@ -61,10 +61,10 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
     start = 0
     for line, end in enumerate(ends):
         if end > start:
-            there = np.flatnonzero(left)
-            position, velocity = bodies.position[there], bodies.velocity[there]
-            particles = Particles(mass[there], position, velocity)
-            yield slice(start, end), run.scene._like(particles, run.scene.forces, run.scene.t0), there.tolist()
+            remaining = np.flatnonzero(left)
+            position, velocity = bodies.position[remaining], bodies.velocity[remaining]
+            particles = Particles(mass[remaining], position, velocity)
+            yield slice(start, end), run.scene._like(particles, run.scene.forces, run.scene.t0), remaining.tolist()
             start = end
         if line < len(table["t"]) and table["survivor"][line] >= 0:
             first, second = int(table["first"][line]), int(table["second"][line])
@@ -103,11 +103,15 @@ def by_era(
     velocity: bool = True,
 ) -> dict[str, NDArray[np.float64]]:
     """What `tell` says of the states of each era, put together."""
-    told = []
-    for rows, scene, there in eras(run):
+    results = []
+    for rows, scene, remaining in eras(run):
         position, moving = run.position[rows], run.velocity[rows] if velocity else None
-        if there is not None:
-            position = np.ascontiguousarray(position[:, there])
-            moving = None if moving is None else np.ascontiguousarray(moving[:, there])
-        told.append(tell(scene, position, moving))
-    return told[0] if len(told) == 1 else {name: np.concatenate([each[name] for each in told]) for name in told[0]}
+        if remaining is not None:
+            position = np.ascontiguousarray(position[:, remaining])
+            moving = None if moving is None else np.ascontiguousarray(moving[:, remaining])
+        results.append(tell(scene, position, moving))
+    return (
+        results[0]
+        if len(results) == 1
+        else {name: np.concatenate([each[name] for each in results]) for name in results[0]}
+    )

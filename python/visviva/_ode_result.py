@@ -185,6 +185,11 @@ class OdeResult(Record):
     def keys(self) -> list[str]:
         """Names of the fields, so that ``dict(result)`` works.
 
+        Returns
+        -------
+        list of str
+            In the order of SciPy's fields.
+
         Examples
         --------
         >>> import visviva as vv
@@ -227,6 +232,11 @@ class OdeResult(Record):
     def values(self) -> list[object]:
         """All fields, in the order of their names.
 
+        Returns
+        -------
+        list
+            What each field holds.
+
         Examples
         --------
         >>> import visviva as vv
@@ -237,6 +247,11 @@ class OdeResult(Record):
 
     def items(self) -> list[tuple[str, object]]:
         """Names and fields.
+
+        Returns
+        -------
+        list of tuple
+            Pairs of a name and what the field holds.
 
         Examples
         --------

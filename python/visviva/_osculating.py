@@ -19,7 +19,7 @@ from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, bod
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
 from visviva.orbits import Elements, elements
-from visviva.orbits._elements import labelled
+from visviva.orbits._elements import labeled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -105,7 +105,7 @@ def elements_of(
         found = {name: values[(slice(None),) * (len(axes) - 1) + (0,)] for name, values in found.items()}
     else:
         along["body"] = labels(names, count)[chosen]
-    return labelled(found, along)
+    return labeled(found, along)
 
 
 def _check_chosen(chosen: list[int], parent: str | int, names: tuple[str, ...]) -> None:
@@ -126,7 +126,7 @@ def _check(
     names: tuple[str, ...],
 ) -> None:
     """Refuse by name what has no conic."""
-    whom = {CENTER_OF_MASS: "the centre of mass of the others", JACOBI: "the centre of mass of those before it"}.get(
+    whom = {CENTER_OF_MASS: "the center of mass of the others", JACOBI: "the center of mass of those before it"}.get(
         str(parent)
     ) or body_label(int(parent), names)
     if isinstance(parent, str) and not np.all(attracting > 0.0):
@@ -139,9 +139,9 @@ def _check(
         raise InvalidInput("G", "expected units in which G times the masses is within the range of float64")
     if lost.any():
         raise InvalidInput("about", f"expected a distance of {who} from {whom} within the range of float64")
-    there = (r == 0.0).all(axis=-1)
-    if there.any():
-        row = tuple(np.argwhere(there)[0].tolist())
+    coincident = (r == 0.0).all(axis=-1)
+    if coincident.any():
+        row = tuple(np.argwhere(coincident)[0].tolist())
         raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
 
 
@@ -164,7 +164,7 @@ def _relative(
 def _jacobi(
     position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], chosen: list[int]
 ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
-    """Each relative to the centre of mass of those before it, which moves by the share of each that is added."""
+    """Each relative to the center of mass of those before it, which moves by the share of each that is added."""
     found = {}
     center, rate, inside = position[..., 0, :], velocity[..., 0, :], mass[..., 0]
     for body in range(1, max(chosen, default=0) + 1):
@@ -179,7 +179,7 @@ def _jacobi(
 def _others(
     position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], body: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Relative to the centre of mass of all others: the mean of the distances, so that none is lost in a great sum."""
+    """Relative to the center of mass of all others: the mean of the distances, so that none is lost in a great sum."""
     weights = np.delete(mass, body, axis=-1)
     total = weights.sum(axis=-1)
     shares = np.divide(weights, total[..., None], out=np.zeros_like(weights), where=total[..., None] > 0.0)[..., None]

@@ -41,7 +41,7 @@ def forces_of_copies(
                 raise InvalidInput(
                     "parameters", f"expected parameters of {type(scene.forces[place]).__name__}, got {name!r}{hint}"
                 )
-            values.setdefault(place, {})[name] = _of_each(name, given)
+            values.setdefault(place, {})[name] = _values_by_copy(name, given)
     count = _count({name: given for named in values.values() for name, given in named.items()})
     return tuple(
         tuple(_with_values(force, values.get(place), copy) for place, force in enumerate(scene.forces))
@@ -67,7 +67,7 @@ def _own_values(force: Force, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
     from visviva.expression_force import parameter_names
 
     names = parameter_names(force)
-    own = {str(name): _of_each(str(name), given) for name, given in named.items() if str(name) in names}
+    own = {str(name): _values_by_copy(str(name), given) for name, given in named.items() if str(name) in names}
     if not own:
         unknown = next(iter(set(map(str, named)) - set(force._values())), None)
         if unknown is not None:
@@ -94,7 +94,7 @@ def _with_values(force: Force, values: dict[str, Sequence[Any]] | None, copy: in
         raise InvalidInput("parameters", f"{type(force).__name__} of copy {copy}: {error}") from error
 
 
-def _of_each(name: str, given: Any) -> Sequence[Any]:
+def _values_by_copy(name: str, given: Any) -> Sequence[Any]:
     """One value for each copy, along the first axis."""
     if isinstance(given, list | tuple) and given and not isinstance(given[0], int | float | list | tuple | np.ndarray):
         return given

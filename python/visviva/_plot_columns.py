@@ -36,8 +36,10 @@ def plot_column(run: Trajectory, column: object, bodies: object, component: obje
     panels = max(1, len(shown))
     if ax is not None:
         if panels != 1:
-            told = ", ".join(repr(letter) for letter in letters)
-            raise InvalidInput("ax", f"one pair of axes takes one panel, and there are {panels}: say component={told}")
+            choices = ", ".join(repr(letter) for letter in letters)
+            raise InvalidInput(
+                "ax", f"one pair of axes takes one panel, and there are {panels}: say component={choices}"
+            )
         axes, figure = [given_axes(ax)], cast("Figure", ax.figure)
     else:
         figure, axes = new_figure(panels, (1.5 + 4.0 * panels, 3.6))

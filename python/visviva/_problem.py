@@ -98,6 +98,11 @@ class Problem(Shown):
         final : Scene or Trajectory
             A state at the time of one of the references; of a trajectory, the last.
 
+        Returns
+        -------
+        float
+            A length; of a problem without dimension a number.
+
         Raises
         ------
         visviva.InvalidInput

@@ -82,8 +82,8 @@ def _measured(of: Span | None, done: int, total: int) -> tuple[float, float]:
     """What is done of how much, in the unit that is shown."""
     if of is None:
         return done, total
-    whole = abs(of[1] - of[0])
-    return whole * done / max(total, 1), whole
+    span = abs(of[1] - of[0])
+    return span * done / max(total, 1), span
 
 
 def _at(of: Span, done: float) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from visviva._style import FRAME, dress
+from visviva._style import FRAME, style_axes
 from visviva.errors import InvalidInput
 from visviva.plot import given_axes, new_figure
 
@@ -54,11 +54,11 @@ def new_panels(
         row, column = 2 * (at // across), at % across
         place = grid[row if two else slice(row, row + 2), column]
         upper = figure.add_subplot(place, projection="3d" if at in solid else "rectilinear")
-        dress(upper)
+        style_axes(upper)
         lower = None
         if two:
             lower = figure.add_subplot(grid[row + 1, column], sharex=upper)
-            dress(lower)
+            style_axes(lower)
             upper.tick_params(labelbottom=False)
         panels.append((upper, lower))
     return figure, panels

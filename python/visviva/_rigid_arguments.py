@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from visviva._body_force import BodyForce
     from visviva.rigid_bodies import RigidBodies
 
-__all__ = ["IDENTITY", "pivots", "principal", "refuse_on_rods", "unit", "which"]
+__all__ = ["IDENTITY", "body_suffix", "pivots", "principal", "refuse_on_rods", "unit_quaternions"]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 # Principal moments of a tensor that rounding alone keeps from 0, relative to the largest.
@@ -59,7 +59,7 @@ def principal(
     return np.where(moments <= _OF_A_ROD * moments[2], 0.0, moments), quaternion_from_matrix(axes)
 
 
-def which(body: int, number: int, names: tuple[str, ...]) -> str:
+def body_suffix(body: int, number: int, names: tuple[str, ...]) -> str:
     """The end of a message about one of several bodies."""
     return f" ({body_label(body, names)})" if number > 1 else ""
 
@@ -69,14 +69,14 @@ def _check_moments(moments: NDArray[np.float64]) -> None:
     _core.free_rotation(moments, np.zeros(3), IDENTITY, np.zeros(0))
 
 
-def unit(turns: NDArray[np.float64], names: tuple[str, ...]) -> NDArray[np.float64]:
+def unit_quaternions(turns: NDArray[np.float64], names: tuple[str, ...]) -> NDArray[np.float64]:
     """The quaternions, of length 1."""
     normalized = np.empty(turns.shape)
     for body, turn in enumerate(turns):
         try:
             normalized[body] = _core.rotation_form("normalized", turn[None])[0]
         except InvalidInput as error:
-            raise InvalidInput("orientation", error.message + which(body, len(turns), names)) from None
+            raise InvalidInput("orientation", error.message + body_suffix(body, len(turns), names)) from None
     return normalized
 
 

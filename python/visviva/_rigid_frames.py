@@ -117,7 +117,12 @@ class FramedBodies:
         )
 
     def reversed(self) -> RigidBodies:
-        """The bodies with their velocities and spins, shape (K, 3), turned round.
+        """The bodies with their velocities and spins, shape (K, 3), reversed.
+
+        Returns
+        -------
+        RigidBodies
+            With −v and −ω, shape (K, 3); all else as it was.
 
         Examples
         --------

@@ -30,10 +30,10 @@ __all__ = [
     "VERSION",
     "Damaged",
     "check_all",
+    "check_contents",
     "check_keys",
     "check_version",
-    "checked",
-    "opened",
+    "read_file",
 ]
 
 FORMAT = "visviva run"
@@ -157,7 +157,7 @@ class Damaged(Exception):
         self.message = message
 
 
-def opened(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+def read_file(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """The header and the arrays of a file that visviva wrote, of whatever format.
 
     Raises
@@ -192,7 +192,7 @@ def check_version(header: dict[str, Any], newest: int) -> None:
         )
 
 
-def checked(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+def check_contents(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
     """Make sure that all is there that a result of a scene needs.
 
     Raises
@@ -264,7 +264,7 @@ def _check_header(header: dict[str, Any]) -> None:
             check_keys("header", header, {name: dict})
             check_keys("header", header[name], {**_SHARED, **own})
     if header.get("continuation", {}).get("goes_on") and "start_continuation" not in header:
-        raise Damaged("the file has a run that goes on with another, and not what it goes on with")
+        raise Damaged("the file has a run that continues another one, but not the state it continues from")
     for name, length in (("rows", 3), ("skipped", 2)):
         for row in header["plan"][name]:
             if not (isinstance(row, list) and len(row) == length and all(isinstance(word, str) for word in row)):

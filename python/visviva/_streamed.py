@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._accuracy import judge
+from visviva._accuracy import warn_if_unresolved
 from visviva._arrays import whole_number
 from visviva._parquet import GROUP_BYTES, groups, write
 from visviva._paths import path_text
@@ -80,7 +80,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             done = int((status != Status.INTERRUPTED).sum())
             where = f", which {path!r} holds" if done else ""
             raise Interrupted(f"interrupted after {done} of {len(copies)} copies{where}") from stopped
-    judge(worst, ensemble=True)
+    warn_if_unresolved(worst, ensemble=True)
     return status
 
 

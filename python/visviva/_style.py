@@ -25,11 +25,11 @@ __all__ = [
     "FRAME",
     "LINES",
     "VERMILION",
-    "dress",
     "legend_beside",
     "legend_within",
     "plot_style",
     "set_box",
+    "style_axes",
 ]
 
 # M. Okabe & K. Ito, *Color Universal Design* (2008), without the yellow, which is not seen on white.
@@ -55,7 +55,7 @@ _WIDE = 0.5
 
 @known_keywords
 def plot_style() -> dict[str, object]:
-    """Give the settings of matplotlib by which a figure of one's own looks like those of the package.
+    """Give the matplotlib settings that make your own figures look like those of the package.
 
     Its colors are Okabe and Ito's, which color-blind readers tell apart; after them lines differ by their dashes.
 
@@ -90,7 +90,7 @@ def _cycle() -> Any:
     return cycler(linestyle=LINES) * cycler(color=COLORS)
 
 
-def dress(axes: Axes) -> None:
+def style_axes(axes: Axes) -> None:
     """Give new axes the colors and the frame of all pictures."""
     axes.set_prop_cycle(_cycle())
     if not hasattr(axes, "get_zlim"):

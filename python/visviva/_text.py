@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["article", "count", "short", "table"]
+__all__ = ["article", "count", "short_repr", "table"]
 
 
 def count(number: int, one: str, many: str | None = None) -> str:
@@ -53,7 +53,7 @@ def table(record: DataclassInstance, leave_out: tuple[str, ...] = ()) -> str:
     return "\n".join(f"{name:<{width}}{_value(value, width)}" for name, value in rows)
 
 
-def short(record: DataclassInstance) -> str:
+def short_repr(record: DataclassInstance) -> str:
     """The name of a record and how many of what it is of, for ``repr``.
 
     Examples
@@ -65,8 +65,8 @@ def short(record: DataclassInstance) -> str:
     first, *rest = fields(record)
     value = getattr(record, first.name)
     shape = np.shape(value)
-    told = f"{first.name}={value:.9g}" if shape == () else f"{first.name} of shape {shape}"
-    return f"{type(record).__name__}({told}, {len(rest)} more: print shows them)"
+    first_field = f"{first.name}={value:.9g}" if shape == () else f"{first.name} of shape {shape}"
+    return f"{type(record).__name__}({first_field}, {len(rest)} more: print shows them)"
 
 
 def _value(value: Any, indent: int) -> str:

@@ -107,7 +107,7 @@ class Totals:
 
     @property
     def center_of_mass(self) -> NDArray[np.float64]:
-        """Centre of mass, shape (T, 3), or (B, T, 3), in the units of the scene.
+        """Center of mass, shape (T, 3), or (B, T, 3), in the units of the scene.
 
         Examples
         --------

@@ -20,7 +20,7 @@ from visviva.plan import Cost
 if TYPE_CHECKING:
     from visviva.plan import Plan
 
-__all__ = ["cost", "stretch"]
+__all__ = ["cost", "run_stretch"]
 
 # A trial is long enough to tell how fast it goes after this time and so many steps, or after the longest time.
 _SECONDS, _STEPS, _LONGEST = 4e-3, 50, 5e-2
@@ -55,7 +55,7 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         tried["method"] = plan.method  # without events `auto` might know a closed form
     scale = copies / max(1, len(few[0]))
     if plan.closed_form:
-        result, seconds = stretch(tried, 1.0)
+        result, seconds = run_stretch(tried, 1.0)
         return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
     chosen = rigid is not None and asked["method"] == "auto" and asked["dt"] is None
     if chosen and not any(method.adaptive for method in methods() if method.name == plan.method):
@@ -67,7 +67,7 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     fraction = min(1.0, abs(step) / span if step is not None and span > 0.0 else 1.0 / 4096.0)
     tried["max_steps"] = _MOST_STEPS
     while True:
-        result, seconds = stretch(tried, fraction)
+        result, seconds = run_stretch(tried, fraction)
         stats = result["stats"]
         # What comes next may be another motion, as of an orbit that decays: of that nothing is told.
         tried["max_steps"] = _MOST_STEPS + _FASTER * stats["steps"]
@@ -81,7 +81,7 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         fraction = min(1.0, 4.0 * fraction)
     if fraction < 1.0 and (stats["steps"] == 0 or (step is None and stats["steps"] < _FEWEST * paths)):
         return None
-    seconds = min(seconds, stretch(tried, fraction)[1])  # the first may have been held up
+    seconds = min(seconds, run_stretch(tried, fraction)[1])  # the first may have been held up
     ratio, exact = scale / fraction, scale / fraction == 1.0
     steps = round(stats["steps"] * ratio)
     if step is not None and step != 0.0:
@@ -96,7 +96,7 @@ def _first(value: object) -> object:
     return value[:_COPIES] if isinstance(value, np.ndarray) else value
 
 
-def stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dict[str, Any], float]:
+def run_stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dict[str, Any], float]:
     """Run the first `fraction` of what is asked, with so many outputs; give the result and the seconds it took.
 
     On a busy machine much of the time that passes is not the run's; on several threads it takes more than passes.

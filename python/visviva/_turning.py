@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array
-from visviva._rigid_arguments import refuse_on_rods, unit
+from visviva._rigid_arguments import refuse_on_rods, unit_quaternions
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
-from visviva.rigid._arguments import rows
+from visviva.rigid._arguments import checked_rows
 from visviva.rigid._orientation import rotate, rotate_back
 from visviva.rigid_bodies import IS_ROUNDED, RigidBodies
 from visviva.rigid_forces import AppliedTorque, RotationalDrag
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
 
 __all__ = [
+    "checked_turning",
+    "core_rigid_of_copies",
     "described",
-    "joined",
+    "joined_bodies",
     "kept_by_bodies",
-    "of_copies_turning",
-    "restored",
-    "rigid_of_copies",
-    "saved",
+    "rigid_for_file",
+    "rigid_from_file",
     "spin_scale",
-    "turning_of",
+    "turning_of_copies",
     "with_centers",
 ]
 
 
-def joined(parts: Sequence[RigidBodies]) -> RigidBodies:
+def joined_bodies(parts: Sequence[RigidBodies]) -> RigidBodies:
     """The rigid bodies of several parts of a scene, in their order."""
     if len(parts) == 1:
         return parts[0]
@@ -90,7 +90,7 @@ def with_centers(found: Sequence[Particles], bodies: RigidBodies, names: Sequenc
     return Particles(**arrays, names=names or None, radius=radius)
 
 
-def of_copies_turning(
+def checked_turning(
     scene: Scene, orientation: ArrayLike | None, angular_velocity: ArrayLike | None
 ) -> dict[str, NDArray[np.float64]]:
     """What is given of rigid bodies, checked: quaternions (B, K, 4) and angular velocities (B, K, 3)."""
@@ -103,12 +103,12 @@ def of_copies_turning(
         width = 4 if name == "orientation" else 3
         given[name] = float_array(name, value, ("B", len(rigid), width))
     if rigid is not None and "orientation" in given:
-        turns = rows("orientation", given["orientation"], (4,))
-        given["orientation"] = unit(turns.reshape(-1, 4), ()).reshape(turns.shape)
+        turns = checked_rows("orientation", given["orientation"], (4,))
+        given["orientation"] = unit_quaternions(turns.reshape(-1, 4), ()).reshape(turns.shape)
     return given
 
 
-def rigid_of_copies(
+def core_rigid_of_copies(
     scene: Scene,
     count: int,
     turning: dict[str, NDArray[np.float64]],
@@ -124,14 +124,14 @@ def rigid_of_copies(
     masses = full["mass"][:, -len(rigid) :]
     if (masses != rigid.mass).any():
         raise InvalidInput("mass", "expected the masses of rigid bodies as they are: their moments belong to them")
-    told: _core._Rigid = described.copy()
-    arrays: Any = told
+    core_rigid: _core._Rigid = described.copy()
+    arrays: Any = core_rigid
     for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
         each = turning.get(name, arrays[name])
         arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
     if rigid.pivoted.any() and "orientation" in turning and "position" not in given:
         pivot = np.nan_to_num(rigid.pivot) if rigid.pivot is not None else np.zeros((len(rigid), 3))
-        arms = rotate(told["orientation"], np.broadcast_to(pivot, (count, len(rigid), 3)))
+        arms = rotate(core_rigid["orientation"], np.broadcast_to(pivot, (count, len(rigid), 3)))
         centers = full["position"][:, -len(rigid) :]
         held = rigid.pivoted[None, :, None]
         placed = full["position"].copy()
@@ -140,7 +140,7 @@ def rigid_of_copies(
         full["position"] = placed
     if rigid.pivot is not None and (turning or "velocity" in given):
         arms = np.where(rigid.pivoted[:, None], -rigid.pivot, 0.0)
-        follows = rotate(told["orientation"], np.cross(told["angular_velocity"], arms))
+        follows = rotate(core_rigid["orientation"], np.cross(core_rigid["angular_velocity"], arms))
         size = 1e-9 * np.abs(follows).max(axis=-1)
         apart = np.abs(full["velocity"][:, -len(rigid) :] - follows).max(axis=-1)
         if (
@@ -151,12 +151,12 @@ def rigid_of_copies(
         moving = full["velocity"].copy()
         centers = moving[:, -len(rigid) :]
         # What a run gives stays as it is, which is that but for roundings.
-        largest = np.abs(told["angular_velocity"]).max(axis=-1) * np.abs(arms).max(axis=-1)
+        largest = np.abs(core_rigid["angular_velocity"]).max(axis=-1) * np.abs(arms).max(axis=-1)
         other = rigid.pivoted & ~(apart <= IS_ROUNDED * largest)
         centers[...] = np.where(other[..., None], follows, centers)
         moving.setflags(write=False)
         full["velocity"] = moving
-    return told
+    return core_rigid
 
 
 def kept_by_bodies(scene: Scene, kept: dict[str, bool]) -> dict[str, bool]:
@@ -184,7 +184,7 @@ def spin_scale(scene: Scene) -> float:
     return float(np.linalg.norm(rigid.principal_moments * spin, axis=-1).sum())
 
 
-def saved(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
+def rigid_for_file(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
     """What a file keeps of rigid bodies: for its header, and arrays by name.
 
     Raises
@@ -204,7 +204,7 @@ def saved(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]
     }
 
 
-def restored(
+def rigid_from_file(
     header: dict[str, Any], arrays: dict[str, NDArray[np.float64]], points: Particles
 ) -> tuple[list[Any], list[BodyForce]]:
     """The particles and the rigid bodies, and the forces on these, of a file whose points are all of them."""
@@ -225,7 +225,7 @@ def restored(
     return [*([points[:free]] if free else []), bodies], forces
 
 
-def turning_of(keywords: _core._Scene, chosen: int | slice) -> dict[str, Any]:
+def turning_of_copies(keywords: _core._Scene, chosen: int | slice) -> dict[str, Any]:
     """Orientations and angular velocities of some copies; nothing without rigid bodies."""
     rigid = keywords["rigid"]
     if rigid is None:

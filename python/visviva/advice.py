@@ -19,7 +19,7 @@ from visviva._arrays import number
 from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords, one_of
 from visviva._text import count
-from visviva._trial import stretch
+from visviva._trial import run_stretch
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.integrators import methods
 
@@ -193,7 +193,7 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
     massless = of == "energy" and bool((prepared["mass"][0] == 0.0).any())
     if closed:
         # Closed forms are right to some ulps.
-        return Advice(wanted, of, massless, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)
+        return Advice(wanted, of, massless, (Option({"method": "auto"}, 1e-14, 0, run_stretch(asked, 1.0)[1]),), 1.0)
     trial = _reference(prepared, dict(asked), of)
     options: list[Option] = []
     # The best are likely among those of high order: with their times known, others are soon given up.
@@ -216,7 +216,7 @@ def _of(columns: dict[str, Any], column: str, bodies: Any) -> Any:
 
 def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
     """The columns of a stretch, its steps and seconds; None if it does not come to its end."""
-    result, seconds = stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
+    result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
     if result["error"] or result["status"].any():
         return None
     return result["columns"], result["stats"]["steps"], seconds

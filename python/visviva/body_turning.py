@@ -125,10 +125,16 @@ class BodyTurning(Rotation, Shown):
         ax : matplotlib.axes.Axes, optional
             Where, of three dimensions where the picture has them; a figure of its own if not given.
 
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure that holds the picture; pyplot does not know it.
+
         Raises
         ------
         visviva.InvalidInput
-            As there.
+            For another kind, an ``ax`` of another dimension, or a motion that has no such picture: a single time, a
+            rod, a body at rest.
 
         Examples
         --------

@@ -79,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     dzhanibekov.add_argument("--flips", type=int, default=6, help="how many (default: 6)")
     dzhanibekov.set_defaults(command=_dzhanibekov)
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
-    stress = commands.add_parser("stress", help="what each method makes of scenes that nobody should ask for")
+    stress = commands.add_parser("stress", help="how each method copes with extreme scenes")
     stress.add_argument("--long", action="store_true", help="with the cases that take minutes")
     stress.add_argument("--methods", nargs="*", metavar="NAME", help="some methods (default: all)")
     stress.set_defaults(command=_stress)

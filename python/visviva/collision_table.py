@@ -37,7 +37,7 @@ class CollisionTable(Exported["CollisionColumnName"], Shown):
     first, second : ndarray of int64, shape (K,)
         The two bodies, ``first < second``.
     speed : ndarray, shape (K,)
-        How fast they approached along the line of their centres; 0 of spheres that only graze each other.
+        How fast they approached along the line of their centers; 0 of spheres that only graze each other.
     position : ndarray, shape (K, 3)
         Where they touched.
     energy_lost : ndarray, shape (K,)

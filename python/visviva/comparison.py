@@ -63,19 +63,24 @@ class WorkPrecision(Shown):
         return tuple(dict.fromkeys(point.series for point in self.points))
 
     def best(self, error: float, series: str | None = None) -> Point | None:
-        """The fastest run whose places are off by this at most; None if there is none.
+        """The fastest run whose position error is at most `error`; None if there is none.
 
         Parameters
         ----------
         error : float
-            The largest error of places, in the units of the problem's lengths.
+            The largest position error, in the units of the problem's lengths.
         series : str, optional
-            Of one method only.
+            Only runs of this method.
+
+        Returns
+        -------
+        Point or None
+            Its time in seconds, its error in the units of the problem's lengths.
 
         Raises
         ------
         visviva.InvalidInput
-            For what is no number; a series that there is not has no best run.
+            If `error` is not a number. An unknown series has no best run.
 
         Examples
         --------
@@ -88,7 +93,12 @@ class WorkPrecision(Shown):
         return min(good, key=lambda point: point.seconds, default=None)
 
     def envelope(self) -> tuple[Point, ...]:
-        """The runs that none beats in both time and error, from the roughest on.
+        """The runs that no other beats in both time and error, from the least precise on.
+
+        Returns
+        -------
+        tuple of Point
+            With falling errors and rising times.
 
         Examples
         --------
@@ -137,12 +147,17 @@ class WorkPrecision(Shown):
         return WorkPrecision(self.name, (*self.points, *more))
 
     def only(self, series: Iterable[str]) -> WorkPrecision:
-        """The same of some of the series, for a picture in which each line can be followed.
+        """The runs of some of the series, for a picture in which each line can be followed.
 
         Parameters
         ----------
         series : iterable of str
             Their names; the order stays.
+
+        Returns
+        -------
+        WorkPrecision
+            The runs of these series alone.
 
         Raises
         ------

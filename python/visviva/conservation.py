@@ -19,7 +19,7 @@ from visviva._mergers import by_era
 from visviva._text import count
 from visviva._turning import spin_scale
 from visviva.errors import InvalidInput
-from visviva.invariants import conserved, internal_motion, kept_by_forces, of_scene, reference_point
+from visviva.invariants import conserved, internal_motion, invariants_of, kept_by_forces, reference_point
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -79,7 +79,7 @@ class Conservation(Shown):
     ----------
     energy, momentum, angular_momentum, center_of_mass : Drift
         Scales: |E₀| (kinetic + |potential| if the energy cancels to round-off), Σ m|v|,
-        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The centre of mass is
+        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The center of mass is
         compared with uniform motion.
     virial : float
         ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
@@ -124,7 +124,7 @@ class Conservation(Shown):
         >>> import visviva as vv
         >>> kept = vv.problems.figure_eight().scene.run(t=[1.0, 2.0], rtol=1e-12).conservation()
         >>> [row.name for row in kept.rows]
-        ['energy', 'momentum', 'angular momentum', 'centre of mass']
+        ['energy', 'momentum', 'angular momentum', 'center of mass']
         """
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
 
@@ -158,25 +158,25 @@ class Conservation(Shown):
         return "\n".join(lines)
 
 
-def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
+def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
     """The table of a trajectory."""
     scene = trajectory.scene
-    start = of_scene(scene, about)
+    start = invariants_of(scene, about)
     point = reference_point(about)
     mass, position, velocity = scene.particles.mass, scene.particles.position, scene.particles.velocity
     origin = start.center_of_mass if point is None else point
     speeds = _lengths(velocity - (start.center_of_mass_velocity if point is None else 0.0))
     distances = _lengths(position - origin)
     spread = float(_lengths(position - start.center_of_mass).max())
-    kept = kept_by_forces(scene, origin)
-    closed, steady = kept["momentum"], kept["spin" if point is None else "angular_momentum"]
+    conserved = kept_by_forces(scene, origin)
+    closed, steady = conserved["momentum"], conserved["spin" if point is None else "angular_momentum"]
     collisions = trajectory.collisions if "collisions" in trajectory._result else None
     merged = collisions is not None and bool((collisions.survivor >= 0).any())
     lost = merged or (collisions is not None and bool(collisions.energy_lost.any()))
 
     t = trajectory.t
-    cancelled = start.kinetic_energy + abs(start.potential_energy)
-    energy_scale = abs(start.energy) if abs(start.energy) > 64 * _EPSILON * cancelled else cancelled
+    canceled = start.kinetic_energy + abs(start.potential_energy)
+    energy_scale = abs(start.energy) if abs(start.energy) > 64 * _EPSILON * canceled else canceled
     about_origin = point is not None and not point.any()
     if about_origin:
         angular = trajectory.angular_momentum
@@ -185,7 +185,7 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
     return Conservation(
         energy=_drift(
-            "energy", t, trajectory.energy - start.energy, energy_scale, conserved=kept["energy"] and not lost
+            "energy", t, trajectory.energy - start.energy, energy_scale, conserved=conserved["energy"] and not lost
         ),
         momentum=_drift(
             "momentum",
@@ -201,9 +201,9 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
             fsum(mass * distances * speeds) + spin_scale(scene),
             conserved=steady and not merged,
         ),
-        center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
+        center_of_mass=_drift("center of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
         virial=_virial(trajectory, closed) if scene.rigid_bodies is None else np.nan,
-        about="centre of mass" if point is None else "origin" if about_origin else "given point",
+        about="center of mass" if point is None else "origin" if about_origin else "given point",
         massless=int(np.count_nonzero(mass == 0.0)),
         collisions=0 if collisions is None else len(collisions),
     )
@@ -220,18 +220,18 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
     sizes = np.abs(change) if change.ndim == 1 else _lengths(change)
     reached = np.isfinite(sizes)
     if not reached.any():
-        raise InvalidInput("record", f"there is no row from which the drift of {name} could be told")
+        raise InvalidInput("record", f"there is no row from which to compute the drift of {name}")
     divisor = scale if scale > 0.0 else 1.0
     sizes, times = sizes[reached] / divisor, t[reached]
-    centred = times - times.mean()
-    spread = float(centred @ centred)
+    centered = times - times.mean()
+    spread = float(centered @ centered)
     return Drift(
         name=name,
         scale=divisor,
         max=float(sizes.max()),
         end=float(sizes[-1]),
         rms=float(np.sqrt(np.mean(sizes * sizes))),
-        slope=float(centred @ sizes) / spread if spread > 0.0 else 0.0,
+        slope=float(centered @ sizes) / spread if spread > 0.0 else 0.0,
         conserved=conserved,
     )
 

@@ -34,7 +34,7 @@ def outer_solar_system(output: Path, days: float, threads: int | None) -> list[P
     out = problem.scene.center_of_mass_frame().run(
         t=np.linspace(0.0, days, 2001), method="kahan_li8", dt=step, threads=threads, progress=_progress()
     )
-    print(f"\n{'':<9}{'x':>20}{'y':>20}{'z':>20}   [AU, from the centre of mass]")
+    print(f"\n{'':<9}{'x':>20}{'y':>20}{'z':>20}   [AU, from the center of mass]")
     for name, row in zip(out.scene.particles.names, out.position[-1], strict=True):
         print(f"{name:<9}" + "".join(f"{value:>20.12f}" for value in row))
     print(f"\n{out.conservation()}\n")
@@ -94,7 +94,7 @@ def _expected(edges: NDArray[np.float64], ratio: float, events: int) -> NDArray[
 def _compare_with_law(tally: vv.scattering.Tally, ratio: float, events: int) -> None:
     expected = _expected(tally.edges, ratio, events)
     pulls = (tally.values() - expected) / np.sqrt(expected)
-    print(f"\n{'angle in the centre-of-mass frame':<36}{'counted':>14}{'law':>16}{'(counted - law)/σ':>20}")
+    print(f"\n{'angle in the center-of-mass frame':<36}{'counted':>14}{'law':>16}{'(counted - law)/σ':>20}")
     for index in range(0, len(expected), 8):
         low, high = np.degrees(tally.edges[index : index + 2])
         span = f"{low:6.1f}° … {high:6.1f}°"

@@ -217,10 +217,10 @@ def custom(
     >>> drop.error < 1e-12
     True
     """
-    from visviva._compiled import sampled
+    from visviva._compiled import sampler
 
     between = number("R_min", R_min), number("R_max", R_max)
-    pieces = _core.fitted(sampled(function, "R"), between, number("tolerance", tolerance), drag=True)
+    pieces = _core.fitted(sampler(function, "R"), between, number("tolerance", tolerance), drag=True)
     return SampledDrag(density, viscosity, radius, *pieces)
 
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from visviva._arrays import float_array, mass_array, radius_array, read_only
-from visviva._continuation import attached, of_copies
+from visviva._continuation import continuation_of_copies, with_continuation
 from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
 from visviva._made_by import made_by
 from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
-from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
+from visviva._turning import checked_turning, core_rigid_of_copies, turning_of_copies
 from visviva.ensemble_trajectory import EnsembleTrajectory, one_or_some, rows_of
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
@@ -98,7 +98,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         if radius is not None:
             each = float_array("radius", radius, ("B", *own["radius"].shape))
             given["radius"] = read_only(radius_array(each, each.shape), radius)
-        turning = of_copies_turning(scene, orientation, angular_velocity)
+        turning = checked_turning(scene, orientation, angular_velocity)
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
         if not given and own_forces is None and not turning:
             raise InvalidInput(
@@ -118,7 +118,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
-        rigid = rigid_of_copies(scene, count, turning, full, given=frozenset(given))
+        rigid = core_rigid_of_copies(scene, count, turning, full, given=frozenset(given))
         prepared: _core._Scene = {
             "mass": full["mass"],
             "position": full["position"],
@@ -154,14 +154,14 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         chosen = one_or_some(index, len(self))
         mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
         radius = self.radius[chosen]
-        continuation = of_copies(self._keywords["continuation"], rows_of(chosen))
+        continuation = continuation_of_copies(self._keywords["continuation"], rows_of(chosen))
         if isinstance(chosen, slice):
-            own = turning_of(self._keywords, chosen)
+            own = turning_of_copies(self._keywords, chosen)
             some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius, **own)
-            return attached(some._own(self.forces[chosen]), continuation)
+            return with_continuation(some._own(self.forces[chosen]), continuation)
         bodies = Particles(mass, position, velocity, self.scene.particles.names, radius)
-        own = turning_of(self._keywords, chosen)
-        return attached(self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own), continuation)
+        own = turning_of_copies(self._keywords, chosen)
+        return with_continuation(self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own), continuation)
 
     if not TYPE_CHECKING:
 
@@ -185,7 +185,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
-        own = turning_of(self._keywords, slice(None))
+        own = turning_of_copies(self._keywords, slice(None))
         return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, self.radius, own)
 
     @property
@@ -272,7 +272,7 @@ def _rebuild(
 ) -> EnsembleScene:
     own: dict[str, Any] = turning or {}
     copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
-    return attached(copies if forces is None else copies._own(forces), continuation)
+    return with_continuation(copies if forces is None else copies._own(forces), continuation)
 
 
 def __dir__() -> list[str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from visviva._continuation import attached, left_behind
+from visviva._continuation import continuation_after, with_continuation
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
@@ -101,7 +101,7 @@ class EnsembleTrajectory(Recorded):
         result["status"] = self.status[rows]
         for table in ("events", "collisions"):
             if table in self._result:
-                result[table] = _of_copies(self._result[table], range(len(self))[rows])
+                result[table] = _rows_of_copies(self._result[table], range(len(self))[rows])
         own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
         result["stats"] = {**result["stats"], **own}
         if isinstance(chosen, slice):
@@ -206,7 +206,9 @@ class EnsembleTrajectory(Recorded):
         mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
         state = {"position": last["position"], "velocity": last["velocity"]}
         copies = type(self.ensemble)(shared, **state, mass=mass, radius=radius, **own)
-        return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
+        return with_continuation(
+            copies._own(self.ensemble.forces), continuation_after(self.ensemble._keywords, self._result)
+        )
 
     def plot(
         self,
@@ -278,7 +280,7 @@ def rows_of(chosen: int | slice) -> slice:
     return chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
 
 
-def _of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
+def _rows_of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
     """The lines of some copies, which are numbered anew."""
     lines = [np.flatnonzero(events["member"] == copy) for copy in copies]
     chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])

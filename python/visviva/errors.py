@@ -202,7 +202,7 @@ class CloseEncounter(Error, RuntimeError):
     time : float
         The time of the encounter, in the units of the scene.
     bodies : (int, int)
-        The two bodies, by index; equal when one body meets a fixed centre.
+        The two bodies, by index; equal when one body meets a fixed center.
     distance : float
         Their distance, in the units of the scene.
     trajectory : Trajectory, optional
@@ -230,7 +230,7 @@ class CloseEncounter(Error, RuntimeError):
         i, j = self.bodies
         names = getattr(getattr(self.trajectory, "_start", None), "_names", ())
         one, both = (names[i], f"{names[i]} and {names[j]}") if names else (f"body {i}", f"bodies {i} and {j}")
-        who = f"{one} is {self.distance:g} from a fixed centre" if i == j else f"{both} are {self.distance:g} apart"
+        who = f"{one} is {self.distance:g} from a fixed center" if i == j else f"{both} are {self.distance:g} apart"
         return f"the step size fell to zero at t = {self.time}: {who}; soften the force, or end the run before it"
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
-from visviva._event import Event, made
+from visviva._event import Event, make_event
 from visviva._event_table import EventTable
 from visviva._keywords import check_call, known_keywords, unknown_name
 from visviva.errors import InvalidInput
@@ -87,7 +87,7 @@ def distance(
     length = positive("below", below)
     i, j = _body("first", first), _body("second", second)
     _check_two("second", i, j)
-    return made("distance", direction, terminal, first=i, second=j, distance=length)
+    return make_event("distance", direction, terminal, first=i, second=j, distance=length)
 
 
 @known_keywords
@@ -135,7 +135,7 @@ def plane(
     through, perpendicular = _point("point", point), _point("normal", normal)
     if not any(perpendicular):
         raise InvalidInput("normal", "expected a vector other than 0, got 0.0 in every component")
-    return made("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
+    return make_event("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
 
 
 @known_keywords
@@ -180,7 +180,7 @@ def apsis(
         _check_two("about", whose, focus)
     else:
         focus = _point("about", about)
-    return made("apsis", direction, terminal, body=whose, about=focus)
+    return make_event("apsis", direction, terminal, body=whose, about=focus)
 
 
 @known_keywords
@@ -222,7 +222,7 @@ def coordinate(
         raise InvalidInput("name", f"expected the name of a coordinate, got {type(name).__name__}")
     from visviva.generalized._source import _label
 
-    return made("coordinate", direction, terminal, coordinate=_label(name), value=number("value", value))
+    return make_event("coordinate", direction, terminal, coordinate=_label(name), value=number("value", value))
 
 
 @known_keywords
@@ -265,7 +265,7 @@ def expression(
     if not callable(expression) and not hasattr(expression, "free_symbols"):
         kind = type(expression).__name__
         raise InvalidInput("expression", f"expected an expression of SymPy or a function f(q, v, t), got {kind}")
-    return made("expression", direction, terminal, expression=expression)
+    return make_event("expression", direction, terminal, expression=expression)
 
 
 @known_keywords
@@ -301,7 +301,7 @@ def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int 
     >>> vv.events.energy(-0.5).parameters
     (('value', -0.5),)
     """
-    return made("energy", direction, terminal, value=number("value", value))
+    return make_event("energy", direction, terminal, value=number("value", value))
 
 
 @known_keywords
@@ -311,7 +311,7 @@ def function(
     direction: EventDirection = 0,
     terminal: bool | int = False,
 ) -> Event:
-    """A function of one's own passes zero.
+    """Your own function passes zero.
 
     It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
     times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them.
@@ -349,7 +349,7 @@ def function(
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
     check_call("call", call, ("t", "position", "velocity"))
-    return made("function", direction, terminal, function=call)
+    return make_event("function", direction, terminal, function=call)
 
 
 def __dir__() -> list[str]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from visviva.typing import Formula, ParameterValues, SymbolicExpression
 
-__all__ = ["ExpressionForce", "parameter_names"]
+__all__ = ["ExpressionForce", "formula_of", "parameter_names"]
 
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
@@ -83,14 +83,14 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
         raise InvalidInput(
             "potential", f"expected one of potential and force, got {'neither' if force is None else 'both'}"
         )
-    names, values = _expression_table.named(parameters, (*_PLACES, *_VELOCITIES, "t"))
+    names, values = _expression_table.checked_parameters(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
     argument: Literal["potential", "force"] = "potential" if force is None else "force"
     roots = (potential,) if force is None else _components(force, names)
     found = [_node(argument, root, nodes, names) for root in roots]
-    made = ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
-    _core.acts_between(made._to_core())  # which compiles it: whatever is wrong with it is refused here
-    return made
+    expressed = ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
+    _core.acts_between(expressed._to_core())  # which compiles it: whatever is wrong with it is refused here
+    return expressed
 
 
 def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
@@ -129,6 +129,18 @@ def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) 
 def parameter_names(force: ExpressedForce) -> tuple[str, ...]:
     """Give the names of a force's parameters, in the order of its ``values``."""
     return _expression_table.parameter_names(force.nodes)
+
+
+def formula_of(force: ExpressedForce) -> str:
+    """Write a force as its expressions, the values of their parameters, and the axes and units that are its own."""
+    values = _expression_table.parameter_values(force.nodes, force.values.tolist())
+    written = _expression_table.formulas(force.nodes, (*_PLACES, *_VELOCITIES), tuple(values))
+    usual: dict[str, Any] = dict(zip(("first", "second", "third"), _AXES, strict=True))
+    usual |= {"origin": (0.0, 0.0, 0.0), "length": 1.0, "mass": 1.0, "time": 1.0}
+    own = {name: getattr(force, name) for name in usual if getattr(force, name) != usual[name]}
+    expressions = f"({', '.join(written)})" if len(written) > 1 else written[0]
+    further = [f"{name}={value!r}" for name, value in (values | own).items()]
+    return f"ExpressedForce({', '.join([f'{force.gives}={expressions}', *further])})"
 
 
 def __dir__() -> list[str]:

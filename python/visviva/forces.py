@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from visviva import _core
-from visviva._declared import Declared, make
+from visviva._declared import Declared, class_from_entry
 from visviva._keywords import known_keywords, refuse_subclass, unknown_name
 from visviva._moves import displacement, orthogonal
 from visviva.errors import InvalidInput
@@ -133,7 +133,12 @@ class Force(Declared):
         return type(self)(**(self._values() | turned)) if turned else self
 
     def reversed(self) -> Self:
-        """The force under which bodies with their velocities turned round retrace their path.
+        """The force under which bodies with reversed velocities retrace their path.
+
+        Returns
+        -------
+        Force
+            With the same parameters where velocities do not enter, else with the signs that reversal gives them.
 
         Raises
         ------
@@ -180,7 +185,17 @@ class Force(Declared):
         return self._rescaled(length, mass, time)
 
 
-_BY_NAME = {entry["name"]: make(entry, Force, __name__, {}) for entry in _core.forces()}
+def _formula_of(force: Any) -> str:
+    from visviva.expression_force import formula_of  # which needs this module
+
+    return formula_of(force)
+
+
+# What a class has beside what is declared.
+_FURTHER: dict[str, dict[str, Any]] = {"expressed_force": {"__repr__": _formula_of}}
+_BY_NAME = {
+    entry["name"]: class_from_entry(entry, Force, __name__, _FURTHER.get(entry["name"], {})) for entry in _core.forces()
+}
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
 globals().update(_CLASSES)
 __all__ = ["Force"]

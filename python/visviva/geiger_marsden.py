@@ -1,6 +1,6 @@
 """What ``visviva geiger-marsden`` shows: alpha particles through silver and gold, against the counts of 1913.
 
-The counts were normalised by their authors and are no raw counts, so their errors are taken as 5 % of each; one scale
+The counts were normalized by their authors and are no raw counts, so their errors are taken as 5 % of each; one scale
 is fitted to each metal, from 45° to 150°. Below, the thickness of the foils and the width of the beam count.
 """
 

@@ -1,7 +1,7 @@
-"""Momentum, angular momentum, energy, centre of mass: all of them at once, with König's split.
+"""Momentum, angular momentum, energy, center of mass: all of them at once, with König's split.
 
 The sums are the core's compensated ones. The internal kinetic energy and the spin are formed from
-velocities relative to the centre of mass, not as differences of large totals.
+velocities relative to the center of mass, not as differences of large totals.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import short, table
+from visviva._text import short_repr, table
 from visviva._turning import kept_by_bodies
 from visviva.errors import InvalidInput
 
@@ -44,10 +44,10 @@ class Invariants(Shown):
     angular_momentum : ndarray, shape (3,)
         About the reference point.
     spin : ndarray, shape (3,)
-        Angular momentum about the centre of mass; angular_momentum = spin + (R − a) × P.
+        Angular momentum about the center of mass; angular_momentum = spin + (R − a) × P.
     torque : ndarray, shape (3,)
         Torque about the reference point: the rate of change of `angular_momentum` about a fixed
-        point, of `spin` about the centre of mass; NaN, as the virial is, beside rigid bodies that torques turn.
+        point, of `spin` about the center of mass; NaN, as the virial is, beside rigid bodies that torques turn.
     kinetic_energy, potential_energy, energy : float
     center_of_mass_kinetic_energy, internal_kinetic_energy : float
         König's split of the kinetic energy: P²/2M and the rest.
@@ -82,7 +82,7 @@ class Invariants(Shown):
     virial: float
 
     def __repr__(self) -> str:
-        return short(self)
+        return short_repr(self)
 
     def __str__(self) -> str:
         return table(self)
@@ -122,14 +122,14 @@ def conserved(
 def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
     """What the forces leave constant: energy, momentum, angular momentum about a point at rest, and spin."""
     p = scene.particles
-    kept = _core.conserves(
+    flags = _core.conserves(
         mass=p.mass, forces=scene._keywords["forces"], position=p.position, velocity=p.velocity, about=about
     )
-    return kept if scene.rigid_bodies is None else kept_by_bodies(scene, kept)
+    return flags if scene.rigid_bodies is None else kept_by_bodies(scene, flags)
 
 
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
-    """The fixed point asked for; None stands for the centre of mass."""
+    """The fixed point asked for; None stands for the center of mass."""
     if about is None:
         return np.zeros(3)
     if isinstance(about, str):
@@ -145,7 +145,7 @@ def internal_motion(
     velocity: NDArray[np.float64],
     turning: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
-    """Kinetic energy and angular momentum of many states in their centre-of-mass frames."""
+    """Kinetic energy and angular momentum of many states in their center-of-mass frames."""
     total = fsum(scene.particles.mass)
     moments = conserved(scene, position, velocity, np.zeros(3), ["momentum", "center_of_mass"])
     relative_position = position - moments["center_of_mass"][:, None]
@@ -154,7 +154,7 @@ def internal_motion(
     return conserved(scene, relative_position, relative_velocity, np.zeros(3), wanted, turning)
 
 
-def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
+def invariants_of(scene: Scene, about: ArrayLike | str | None) -> Invariants:
     """Everything at the state of a scene."""
     p = scene.particles
     total = fsum(p.mass)

@@ -19,18 +19,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import numpy as np
 
 import visviva
-from visviva._continuation import ARRAYS, SHARED, attached, turning
+from visviva._continuation import ARRAYS, SHARED, turning, with_continuation
 from visviva._files import write
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
-from visviva._stored import COUNTS, FOIL, FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, checked, opened
-from visviva._turning import restored, saved
+from visviva._stored import COUNTS, FOIL, FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, check_contents, read_file
+from visviva._turning import rigid_for_file, rigid_from_file
 from visviva.ensemble import EnsembleScene
 from visviva.ensemble_trajectory import EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
 from visviva.particles import Particles
-from visviva.plan import told
+from visviva.plan import plan_as_dict
 from visviva.scene import Scene
 from visviva.trajectory import Trajectory
 
@@ -88,7 +88,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         "t0": start["t0"],
         "forces": start["forces"],
         "stats": result["stats"],
-        "plan": told(result["plan"]),
+        "plan": plan_as_dict(result["plan"]),
     }
     if start["own_forces"] is not None:
         header["own_forces"] = start["own_forces"]
@@ -98,7 +98,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         header["events"] = result["looked_for"]
     if "continuation" in result:
         header["continuation"] = result["continuation"]
-    about_rigid, of_rigid = saved(run._scene)
+    about_rigid, of_rigid = rigid_for_file(run._scene)
     header |= about_rigid
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
@@ -152,11 +152,11 @@ GeneralizedEnsembleTrajectory, or of events that were counted MonteCarlo or Foil
     name = path_text("path", path)
     with open(name, "rb") as stream:
         try:
-            header, arrays = opened(stream)
+            header, arrays = read_file(stream)
             if header["format"] in _OTHERS:
-                return cast("_Saved", import_module(_OTHERS[header["format"]]).restored(header, arrays))
-            checked(header, arrays)
-            return _restored(header, arrays)
+                return cast("_Saved", import_module(_OTHERS[header["format"]]).run_from_file(header, arrays))
+            check_contents(header, arrays)
+            return _run_from_file(header, arrays)
         except MemoryError:  # a good file may be too large
             raise
         except Damaged as error:
@@ -170,7 +170,7 @@ GeneralizedEnsembleTrajectory, or of events that were counted MonteCarlo or Foil
             ) from error
 
 
-def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
+def _run_from_file(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
     result: dict[str, Any] = {group: {} for group in GROUPS}
     result |= {"t": arrays["t"], "status": arrays["status"], "stats": header["stats"], "plan": header["plan"]}
     if "continuation" in header:
@@ -193,7 +193,7 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     names = header.get("names")
     radius = arrays.get("radius", np.zeros(arrays["mass"].shape))
     first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0], names, radius[0])
-    bodies, loads = restored(header, arrays, first)
+    bodies, loads = rigid_from_file(header, arrays, first)
     scene = Scene(*bodies, *forces, *loads, t0=header["t0"])
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
@@ -210,9 +210,9 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
             sets, of_copy = header["own_forces"]
             own = [tuple(force_from_core(description) for description in forces) for forces in sets]
             copies = copies._own(tuple(own[which] for which in of_copy))
-        run = EnsembleTrajectory(attached(copies, before), result)
+        run = EnsembleTrajectory(with_continuation(copies, before), result)
     else:
-        run = Trajectory(attached(scene, before), result)
+        run = Trajectory(with_continuation(scene, before), result)
     _ = run.stats, run.plan, run.status, "events" in result and run.events
     _ = "collisions" in result and run.collisions
     return run

@@ -204,7 +204,7 @@ class Particles(Shown):
             The gravitational constant: μ = G (mass of what a body is about + its own mass).
         about : int or str, or sequence of them, optional
             What the new bodies orbit, all the same or one for each: a body that is there before them, by index (0 the
-            central one) or name; ``"jacobi"``, the centre of mass of all bodies before each; ``"center_of_mass"``,
+            central one) or name; ``"jacobi"``, the center of mass of all bodies before each; ``"center_of_mass"``,
             that of the bodies of `central`.
         semi_major_axis, pericenter, semi_latus_rectum, period : array_like, optional
             The size, by one of the four, positive: a (also of a hyperbola; a parabola has none), the least distance, p,
@@ -301,7 +301,7 @@ class Particles(Shown):
         return body_index("name", name, self.names, len(self))
 
     def center_of_mass(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Position and velocity of the centre of mass.
+        """Position and velocity of the center of mass.
 
         Units: those of the scene.
 
@@ -347,8 +347,8 @@ class Particles(Shown):
         Examples
         --------
         >>> import visviva as vv
-        >>> kilometres = vv.Particles([1.0], [[2.0, 0.0, 0.0]], [[3.0, 0.0, 0.0]])
-        >>> kilometres.rescaled(length=1000.0).position
+        >>> kilometers = vv.Particles([1.0], [[2.0, 0.0, 0.0]], [[3.0, 0.0, 0.0]])
+        >>> kilometers.rescaled(length=1000.0).position
         array([[2000.,    0.,    0.]])
         """
         for name, scale in (("length", length), ("mass", mass), ("time", time)):
@@ -374,7 +374,7 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
 
     total = fsum(weights)
     if not total > 0.0:
-        raise InvalidInput("mass", "the total mass is zero, so there is no centre of mass; give one body a mass")
+        raise InvalidInput("mass", "the total mass is zero, so there is no center of mass; give one body a mass")
     products = (values.reshape(values.shape[0], -1).T * weights).tolist()
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
 

@@ -167,7 +167,7 @@ class Plan(Shown):
         return cls(**known, _asked=asked)
 
 
-def told(plan: dict[str, Any] | _core.Planned) -> dict[str, Any]:
+def plan_as_dict(plan: dict[str, Any] | _core.Planned) -> dict[str, Any]:
     """The plan of a run or of a file as a dictionary: that of a run is made when somebody asks."""
     return plan if isinstance(plan, dict) else plan.told()
 

@@ -9,7 +9,7 @@ import numpy as np
 from visviva._keywords import did_you_mean
 from visviva._names import body_indices
 from visviva._packages import needed
-from visviva._style import FRAME, dress, legend_beside, set_box
+from visviva._style import FRAME, legend_beside, set_box, style_axes
 from visviva._text import count
 from visviva.errors import InvalidInput
 
@@ -68,7 +68,7 @@ def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = 
     for panel in range(panels):
         kind = "3d" if panel in solid else "rectilinear"
         axes.append(figure.add_subplot(1, panels, panel + 1, projection=kind))
-        dress(axes[-1])
+        style_axes(axes[-1])
     return figure, axes
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
 from visviva._arrays import float_array, positive
-from visviva._custom_potential import Custom, written
-from visviva._declared import Declared, make
+from visviva._custom_potential import Custom, formula_of
+from visviva._declared import Declared, class_from_entry
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass, unknown_name
 from visviva.errors import InvalidInput
 
@@ -34,7 +34,7 @@ _CURES = {
 
 @known_keywords
 class Potential(Declared):
-    """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
+    """A potential energy V(r) of the distance between two bodies, or from a fixed center.
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
 
@@ -240,6 +240,11 @@ def _between(
     bohr_radius : float, positive, optional
         Bohr's radius in the same units. In Å if not given.
 
+    Returns
+    -------
+    ScreenedCoulomb
+        With k = Z1 Z2 e², in energy · length, and the length in the units of `bohr_radius`.
+
     Raises
     ------
     visviva.InvalidInput
@@ -267,11 +272,11 @@ def _between(
 # What a class has beside what is declared.
 _FURTHER: dict[str, dict[str, Any]] = {
     "screened_coulomb": {"between": classmethod(_between)},
-    "expressed": {"__repr__": written},
+    "expressed": {"__repr__": formula_of},
 }
 _SHAPES = "Distances may have any shape; values, forces and curvatures have the same."
 _BY_NAME = {
-    entry["name"]: make(
+    entry["name"]: class_from_entry(
         entry | {"notes": f"{entry['notes']} {_SHAPES}".strip()},
         Potential,
         __name__,

@@ -56,7 +56,7 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     Parameters
     ----------
     variant : {"hairer_lubich_wanner", "applegate"}, optional
-        As in `visviva.datasets.outer_solar_system`. Applegate's is put into its centre-of-mass frame.
+        As in `visviva.datasets.outer_solar_system`. Applegate's is put into its center-of-mass frame.
 
     Returns
     -------

@@ -19,7 +19,7 @@ from visviva._names import body_index
 from visviva._text import count
 from visviva._totals import Totals
 from visviva.errors import InvalidInput
-from visviva.plan import Plan, told
+from visviva.plan import Plan, plan_as_dict
 from visviva.stats import Stats
 from visviva.typing import ColumnName
 
@@ -100,7 +100,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By way of the constructor, which makes the arrays read-only again.
-        return type(self), (self._start, {**self._result, "plan": told(self._result["plan"])})
+        return type(self), (self._start, {**self._result, "plan": plan_as_dict(self._result["plan"])})
 
     if not TYPE_CHECKING:
 
@@ -185,6 +185,11 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
         body : str or int
             Its name, if the particles have names, or its index.
 
+        Returns
+        -------
+        BodyMotion
+            Its columns, in the units of the run, without the axis over the bodies.
+
         Raises
         ------
         visviva.InvalidInput
@@ -219,7 +224,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
             Names or indices; by default all that orbit something, in their order: all but the body `about`; all but
             the first about "jacobi".
         about : str or int, optional
-            The body that they orbit, by name or index. ``"jacobi"``: each orbits the centre of mass of all bodies
+            The body that they orbit, by name or index. ``"jacobi"``: each orbits the center of mass of all bodies
             before it; ``"center_of_mass"``: that of all the other bodies.
         G : float, optional
             The gravitational constant; by default that of the scene's `Gravity`.
@@ -289,7 +294,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
         """
         if "events" not in self._result:
             raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
-        from visviva._told_events import from_description
+        from visviva._event_descriptions import from_description
         from visviva.events import EventTable
 
         # Files of before they were kept have none.
@@ -342,7 +347,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
         >>> vv.problems.figure_eight().scene.run(t=1.0, method="leapfrog", dt=0.01).plan.method
         'leapfrog'
         """
-        return Plan._from_core(told(self._result["plan"]))
+        return Plan._from_core(plan_as_dict(self._result["plan"]))
 
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         rows = self._row_axes

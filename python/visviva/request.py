@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 import numpy as np
 
 from visviva import _core
-from visviva._accuracy import judge
+from visviva._accuracy import warn_if_unresolved
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 from visviva.status import Status
@@ -138,12 +138,12 @@ def _or_none(check: Callable[[str, object], _Check]) -> Callable[[str, object], 
 def _events(_: str, given: object) -> list[dict[str, Any]]:
     if isinstance(given, tuple | list) and not given:
         return []
-    from visviva._told_events import to_core
+    from visviva._event_descriptions import to_core
 
     return to_core(given)
 
 
-def _told(check: Callable[[str, object], object]) -> dict[str, Any]:
+def _sent_to_core(check: Callable[[str, object], object]) -> dict[str, Any]:
     """For a field that the core is told of, by the field's name, as ``check(name, value)``."""
     return {"check": check}
 
@@ -166,17 +166,19 @@ class PlanRequest:
     """What is asked of a scene. Its fields are the arguments of ``plan``, and of ``run`` too."""
 
     t: ArrayLike = field(kw_only=False)
-    method: MethodName | Method = field(default="auto", metadata=_told(_method))
-    dt: float | None = field(default=None, metadata=_told(_or_none(_step)))
-    time_transformation: TransformationName | None = field(default=None, metadata=_told(_or_none(_word)))
-    rtol: float = field(default=_RTOL, metadata=_told(number))
-    atol: ArrayLike | Mapping[str, ArrayLike] | None = field(default=None, metadata=_told(_or_none(_tolerances)))
-    max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
-    max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
-    record: ColumnName | Sequence[ColumnName] = field(default=_RECORDED, metadata=_told(_words))
-    events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
-    collisions: CollisionRule | None = field(default=None, metadata=_told(_or_none(_word)))
-    restitution: float | None = field(default=None, metadata=_told(_or_none(number)))
+    method: MethodName | Method = field(default="auto", metadata=_sent_to_core(_method))
+    dt: float | None = field(default=None, metadata=_sent_to_core(_or_none(_step)))
+    time_transformation: TransformationName | None = field(default=None, metadata=_sent_to_core(_or_none(_word)))
+    rtol: float = field(default=_RTOL, metadata=_sent_to_core(number))
+    atol: ArrayLike | Mapping[str, ArrayLike] | None = field(
+        default=None, metadata=_sent_to_core(_or_none(_tolerances))
+    )
+    max_step: float | None = field(default=None, metadata=_sent_to_core(_or_none(number)))
+    max_steps: int | None = field(default=None, metadata=_sent_to_core(_or_none(whole_number)))
+    record: ColumnName | Sequence[ColumnName] = field(default=_RECORDED, metadata=_sent_to_core(_words))
+    events: Sequence[Event | EventFunction] = field(default=(), metadata=_sent_to_core(_events))
+    collisions: CollisionRule | None = field(default=None, metadata=_sent_to_core(_or_none(_word)))
+    restitution: float | None = field(default=None, metadata=_sent_to_core(_or_none(number)))
 
     def to_core(self, prepared: _core._Scene, names: tuple[str, ...]) -> _core._Request:
         """What ``_core.run`` and ``_core.plan`` both take, of a scene of bodies with these names."""
@@ -200,9 +202,9 @@ class PlanRequest:
                 "leave rtol out and choose dt, or name an adaptive method such as verner98",
             )
         if asked["events"]:
-            from visviva._told_events import resolved
+            from visviva._event_descriptions import with_body_indices
 
-            asked["events"] = resolved(asked["events"], names)
+            asked["events"] = with_body_indices(asked["events"], names)
         return cast("_core._Request", asked)
 
 
@@ -316,15 +318,15 @@ def finished(
 ) -> _Result:
     """The result of what the core gave, or the core's error with the result attached."""
     if asked["events"]:
-        from visviva._told_events import described
+        from visviva._event_descriptions import descriptions
 
-        result["looked_for"] = described(asked["events"])
+        result["looked_for"] = descriptions(asked["events"])
     if asked["end_only"] and not ensemble and result["status"][0] == Status.STOPPED:
         from visviva._stopped import ended_at_the_stop
 
         ended_at_the_stop(result, asked)
     made = make(result)
-    judge(result, ensemble=ensemble)
+    warn_if_unresolved(result, ensemble=ensemble)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

@@ -15,11 +15,11 @@ from visviva._arrays import float_array, mass_array, read_only
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
-from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
+from visviva._rigid_arguments import IDENTITY, body_suffix, pivots, principal, unit_quaternions
 from visviva._rigid_frames import FramedBodies
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import rows
+from visviva.rigid._arguments import checked_rows
 from visviva.rigid._orientation import rotate, rotate_back
 
 if TYPE_CHECKING:
@@ -157,8 +157,10 @@ class RigidBodies(FramedBodies, Shown):
             self._keep(
                 name, np.zeros((number, 3)) if given is None else float_array(name, given, ("K", 3), sizes), given
             )
-        turns = np.tile(IDENTITY, (number, 1)) if orientation is None else rows("orientation", orientation, (4,))
-        self._keep("orientation", unit(float_array("orientation", turns, ("K", 4), sizes), self.names))
+        turns = (
+            np.tile(IDENTITY, (number, 1)) if orientation is None else checked_rows("orientation", orientation, (4,))
+        )
+        self._keep("orientation", unit_quaternions(float_array("orientation", turns, ("K", 4), sizes), self.names))
         self._keep("pivot", None if pivot is None else pivots(pivot, sizes))
         self._find_axes()
         self._follow_spin()
@@ -173,7 +175,7 @@ class RigidBodies(FramedBodies, Shown):
         argument = "moments" if self.inertia is None else "inertia"
         found = []
         for body, given in enumerate(getattr(self, argument)):
-            point, of = fixed[body] if pivoted[body] else None, which(body, len(self), self.names)
+            point, of = fixed[body] if pivoted[body] else None, body_suffix(body, len(self), self.names)
             found.append(principal(argument, given, float(self.mass[body]), point, of))
         axes = np.array([turn for _, turn in found]).reshape(-1, 4)
         center = rotate_back(axes, np.where(pivoted[:, None], -fixed, 0.0)) + 0.0

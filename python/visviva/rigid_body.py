@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import rows
+from visviva.rigid._arguments import checked_rows
 from visviva.rigid_bodies import RigidBodies
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def RigidBody(  # noqa: N802
     """
     if name is not None and not (isinstance(name, str) and name.strip()):
         raise InvalidInput("name", f"expected a text that is not empty, got {name!r}")
-    turn = rows("orientation", orientation, (4,))
+    turn = checked_rows("orientation", orientation, (4,))
     vectors = {"position": position, "velocity": velocity, "angular_velocity": angular_velocity}
     return RigidBodies(
         [positive("mass", mass, "mass")],

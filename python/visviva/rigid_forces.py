@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NoReturn, Self
 
 import numpy as np
 
-from visviva._body_force import BodyForce, Vector, body_of, keep, not_negative, vector
-from visviva._compiled import of_orientation
+from visviva._body_force import BodyForce, Vector, body_of, not_negative, set_frozen, vector
+from visviva._compiled import torque_address
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._moves import orthogonal
 from visviva.errors import InvalidInput
@@ -63,7 +63,7 @@ class AppliedTorque(BodyForce):
     def __init__(
         self, torque: ArrayLike, body: int | str | None = None, frame: Literal["space", "body"] = "space"
     ) -> None:
-        keep(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
+        set_frozen(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
         if not isinstance(frame, str) or frame not in ("space", "body"):
             hint = did_you_mean(str(frame), ("space", "body"))
             raise InvalidInput("frame", f"expected 'space' or 'body', got {frame!r}{hint}")
@@ -138,7 +138,7 @@ class RotationalDrag(BodyForce):
     body: int | str | None
 
     def __init__(self, coefficient: float, body: int | str | None = None) -> None:
-        keep(self, coefficient=not_negative("coefficient", coefficient), body=body_of("body", body))
+        set_frozen(self, coefficient=not_negative("coefficient", coefficient), body=body_of("body", body))
 
 
 @known_keywords
@@ -184,14 +184,14 @@ class CompiledTorque(BodyForce):
 
     kind: ClassVar[str] = "compiled_torque"
     _dimensions = {}  # noqa: RUF012
-    _one_way = "nobody knows the reverse of a function"
+    _one_way = "a function has no known reverse"
 
     function: CompiledFunction
     body: int | str | None
 
     def __init__(self, function: CompiledFunction, body: int | str | None = None) -> None:
-        of_orientation(function)
-        keep(self, function=function, body=body_of("body", body))
+        torque_address(function)
+        set_frozen(self, function=function, body=body_of("body", body))
 
     @property
     def address(self) -> int:
@@ -208,7 +208,7 @@ class CompiledTorque(BodyForce):
         >>> vv.CompiledTorque(motor, body=0).address == ctypes.cast(motor, ctypes.c_void_p).value
         True
         """
-        return of_orientation(self.function)
+        return torque_address(self.function)
 
     def _core_arguments(self) -> dict[str, Any]:
         """What the core takes, the address in the place of the function, which has to be kept as long as it is used."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from visviva._body_force import BodyForce, Vector, body_of, keep, not_negative, vector
+from visviva._body_force import BodyForce, Vector, body_of, not_negative, set_frozen, vector
 from visviva._keywords import known_keywords
 from visviva._moves import displacement, orthogonal
 from visviva.errors import InvalidInput
@@ -105,7 +105,7 @@ class AttachedSpring(BodyForce):
         ends = [name for name, end in (("to", to), ("particle", particle), ("anchor", anchor)) if end is not None]
         if len(ends) != 1:
             raise InvalidInput("to", f"expected one of to, particle and anchor, got {' and '.join(ends) or 'none'}")
-        keep(
+        set_frozen(
             self,
             body=body_of("body", body),
             point=vector("point", point),
@@ -191,6 +191,11 @@ class AttachedSpring(BodyForce):
 
     def reversed(self) -> Self:
         """The same, without damping.
+
+        Returns
+        -------
+        AttachedSpring
+            The same object: a spring alone pushes alike in both directions of time.
 
         Raises
         ------

@@ -87,16 +87,16 @@ class Runnable(Shown, ABC, Generic[_Result]):
         collisions : {"merge", "bounce", "stop"}, optional
             What bodies with a `Particles.radius` do when they touch; by default they pass through each other.
             ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,
-            momentum, centre of mass and volume are kept, the angular momentum of both about each other is not. The
+            momentum, center of mass and volume are kept, the angular momentum of both about each other is not. The
             other has no mass and no radius from then on and goes with it: ``out.final.particles.mass`` tells, and a
-            run with any ``collisions`` goes on from there. ``"bounce"``: an impulse along the line of their centres; a
+            run with any ``collisions`` goes on from there. ``"bounce"``: an impulse along the line of their centers; a
             massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
             ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
             anew after it. All bodies are on the same steps, no closed form is used while two may touch, and
             ``out.collisions`` is the table of them. Spheres that overlap at the start are refused. Those that bounce
             and come to rest on each other end the run, with `Status.RESTING`.
         restitution : float, optional
-            The part of their speed along the line of centres with which spheres part that bounce, from 0 to 1, the
+            The part of their speed along the line of centers with which spheres part that bounce, from 0 to 1, the
             default.
         threads : int, optional
             Threads to use; by default ``VISVIVA_THREADS``, else the cores available.

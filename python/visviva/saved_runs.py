@@ -18,15 +18,15 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive, whole_number
+from visviva._event_descriptions import from_description
 from visviva._files import to_disk
-from visviva._joined_parts import joined
+from visviva._joined_parts import joined_result
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva._progress import TIME, callback
-from visviva._told_events import from_description
 from visviva.errors import InvalidInput
 from visviva.io import load
-from visviva.plan import told
+from visviva.plan import plan_as_dict
 from visviva.request import RunRequest, finished
 from visviva.status import Status
 from visviva.trajectory import Trajectory
@@ -132,7 +132,7 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
     _parts(scene, replace(request, save_every=every), asked, _core.plan(asked))
     folder = Path(path_text("save_to", request.save_to, "folder"))
     if (folder / _REQUEST).exists():
-        raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume goes on with it")
+        raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume continues it")
     folder.mkdir(exist_ok=True)
     # A state of no length: the scene, and what it goes on with itself.
     scene.run(t=[scene.t0], record=("position", "velocity")).save(folder / _START)
@@ -175,7 +175,7 @@ def _go_on(folder: Path, scene: Scene, request: RunRequest) -> Trajectory:
             if run._result.get("error") is not None or int(run._result["status"][0]) != 0:
                 break
             leg = run.final
-    result = joined(results, [part.asked for part in parts])
+    result = joined_result(results, [part.asked for part in parts])
     result |= {"plan": plan, "error": results[-1].get("error")}
     return finished(result, whole, ensemble=False, make=scene._finished)
 
@@ -236,30 +236,30 @@ def _parts(scene: Scene, request: RunRequest, asked: Any, plan: dict[str, Any]) 
     if asked["end_only"]:
         times = np.array([scene.t0, times[-1]])
     last = float(times[-1])
-    way = math.copysign(1.0, last - scene.t0)
+    forward = math.copysign(1.0, last - scene.t0)
     if plan["solution"].startswith("closed form"):
         # Any time at once: there is nothing to lose.
         return [_Part(times, len(times))]
     every = float(request.save_every or 0.0)
     base, first, step = scene.t0, 0, every
-    whole = 1
+    steps_per_part = 1
     if request.dt is not None:
         step = abs(float(request.dt))
-        whole = max(1, round(every / step))
+        steps_per_part = max(1, round(every / step))
         before = scene._keywords["continuation"]
-        if before is not None and before["method"] == plan["method"] and before["dt"] == way * step:
+        if before is not None and before["method"] == plan["method"] and before["dt"] == forward * step:
             base, first = before["t0"], before["node"]
-    number = abs(last - scene.t0) / (whole * step)
+    number = abs(last - scene.t0) / (steps_per_part * step)
     if number > _MOST:
         raise InvalidInput("save_every", f"expected at most {_MOST} parts, got {number:.3g}; give a longer time")
     # As the nodes of a run are, t0 + n·h; the last part is not left with less than half a step.
-    ends = [base + way * ((first + count * whole) * step) for count in range(1, math.ceil(number) + 1)]
+    ends = [base + forward * ((first + count * steps_per_part) * step) for count in range(1, math.ceil(number) + 1)]
     least = 0.5 * step if request.dt is not None else 1e-9 * step
-    ends = [end for end in ends if (last - end) * way > least]
+    ends = [end for end in ends if (last - end) * forward > least]
     parts: list[_Part] = []
     place = 0
     for end in [*ends, last]:
-        stop = int(np.searchsorted(way * times, way * end, side="right")) if end != last else len(times)
+        stop = int(np.searchsorted(forward * times, forward * end, side="right")) if end != last else len(times)
         own = times[place:stop]
         parts.append(_Part(own if len(own) and own[-1] == end else np.append(own, end), len(own)))
         place = stop
@@ -295,7 +295,7 @@ def _loaded(file: Path) -> Trajectory:
     run = load(file)
     if not isinstance(run, Trajectory):
         raise InvalidInput("path", f"expected one run in {str(file)!r}, got an ensemble")
-    run._result["plan"] = told(run._result["plan"])
+    run._result["plan"] = plan_as_dict(run._result["plan"])
     return run
 
 

@@ -16,12 +16,12 @@ from visviva import _core
 from visviva import forces as force_classes
 from visviva._arrays import number
 from visviva._body_force import BodyForce
-from visviva._continuation import attached
+from visviva._continuation import with_continuation
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import JOINING, known_keywords
 from visviva._text import article
-from visviva._turning import described, joined, with_centers
+from visviva._turning import described, joined_bodies, with_centers
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
@@ -147,7 +147,7 @@ class Scene(Runnable[Trajectory], Framed):
         if len(found) > 1 or not (found or rigid):
             advice = JOINING if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        bodies = joined(rigid) if rigid else None
+        bodies = joined_bodies(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]
         acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
         counts = (len(found[0]) if found else 0, len(bodies) if bodies else 0)
@@ -359,6 +359,11 @@ class Scene(Runnable[Trajectory], Framed):
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state and time, shape (N, 3), in the units of the scene.
 
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            Length per time², in the units of the scene; of rigid bodies that of their centers, after the particles.
+
         Raises
         ------
         visviva.InvalidInput
@@ -373,7 +378,7 @@ class Scene(Runnable[Trajectory], Framed):
         from visviva._mergers import hosts
 
         if not self._turns_freely:
-            raise InvalidInput("rigid_bodies", "accelerations are not told of rigid bodies that torques turn")
+            raise InvalidInput("rigid_bodies", "accelerations are not available for rigid bodies under torques")
 
         p = self.particles
         parts = hosts(p)
@@ -386,7 +391,7 @@ class Scene(Runnable[Trajectory], Framed):
         )
 
     def invariants(self, about: ArrayLike | str | None = None) -> Invariants:
-        """Momentum, angular momentum, energy, centre of mass and König's split at the scene's state.
+        """Momentum, angular momentum, energy, center of mass and König's split at the scene's state.
 
         Units: those of the scene.
 
@@ -414,9 +419,9 @@ class Scene(Runnable[Trajectory], Framed):
         >>> vv.problems.pythagorean().scene.invariants().energy
         -12.816666666666666
         """
-        from visviva.invariants import of_scene
+        from visviva.invariants import invariants_of
 
-        return of_scene(self, about)
+        return invariants_of(self, about)
 
     def elements(
         self,
@@ -499,7 +504,7 @@ def _rebuild(
 ) -> Scene:
     scene = object.__new__(Scene)
     scene._set(particles, forces, t0, rigid_bodies, body_forces)
-    return attached(scene, continuation)
+    return with_continuation(scene, continuation)
 
 
 def __dir__() -> list[str]:

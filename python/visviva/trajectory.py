@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 import numpy as np
 
 from visviva import _core
-from visviva._continuation import attached, left_behind
+from visviva._continuation import continuation_after, with_continuation
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
@@ -182,16 +182,21 @@ class Trajectory(Recorded):
         if "mass" in last:
             own = {name: last[name][0] for name in ("mass", "radius") if name in last}
             scene = scene._like(scene.particles._changed(**own), scene.forces, scene.t0)
-        return attached(scene, left_behind(self.scene._keywords, self._result))
+        return with_continuation(scene, continuation_after(self.scene._keywords, self._result))
 
     def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
-        """Angular momentum about a fixed point or about the moving centre of mass, shape (T, 3).
+        """Angular momentum about a fixed point or about the moving center of mass, shape (T, 3).
 
         Units: those of the scene.
 
         Parameters
         ----------
         about : array_like, shape (3,), or "center_of_mass"
+
+        Returns
+        -------
+        ndarray, shape (T, 3)
+            Mass · length² / time, in the units of the scene.
 
         Raises
         ------
@@ -230,6 +235,11 @@ class Trajectory(Recorded):
         about : array_like, shape (3,), or "center_of_mass", optional
             Reference point of the angular momentum; the origin by default.
 
+        Returns
+        -------
+        Conservation
+            A row for each quantity: its largest, last and rms drift, in the units of the scene and relative to a scale.
+
         Raises
         ------
         visviva.InvalidInput
@@ -246,9 +256,9 @@ class Trajectory(Recorded):
         >>> table.energy.max < 1e-14
         True
         """
-        from visviva.conservation import of_trajectory
+        from visviva.conservation import conservation_of
 
-        return of_trajectory(self, about)
+        return conservation_of(self, about)
 
     def plot(
         self,

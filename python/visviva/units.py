@@ -126,7 +126,7 @@ class Units(Shown):
     name : str
         What the units are.
     length, mass, time : float
-        One of each in metres, kilograms and seconds. Of units that have no size of their own (`N_BODY`) 1.
+        One of each in meters, kilograms and seconds. Of units that have no size of their own (`N_BODY`) 1.
     G : float
         The gravitational constant.
     c : float
@@ -182,12 +182,12 @@ def _system(name: str, length: float, mass: float, time: float, source: str, gm:
 
 
 _CODATA = "CODATA 2022"
-SI = _system("metre, kilogram, second", 1.0, 1.0, 1.0, _CODATA)
-"""Metre, kilogram, second. Source: CODATA 2022."""
-CGS = _system("centimetre, gram, second", 1e-2, 1e-3, 1.0, _CODATA)
-"""Centimetre, gram, second. Source: CODATA 2022."""
-KILOMETER_KILOGRAM_SECOND = _system("kilometre, kilogram, second", 1e3, 1.0, 1.0, _CODATA)
-"""Kilometre, kilogram, second. Source: CODATA 2022."""
+SI = _system("meter, kilogram, second", 1.0, 1.0, 1.0, _CODATA)
+"""Meter, kilogram, second. Source: CODATA 2022."""
+CGS = _system("centimeter, gram, second", 1e-2, 1e-3, 1.0, _CODATA)
+"""Centimeter, gram, second. Source: CODATA 2022."""
+KILOMETER_KILOGRAM_SECOND = _system("kilometer, kilogram, second", 1e3, 1.0, 1.0, _CODATA)
+"""Kilometer, kilogram, second. Source: CODATA 2022."""
 # The mass is the Sun's nominal one, so G has all its digits: a mass is given as its GM over GM_SUN.
 AU_DAY_SOLAR_MASS = _system(
     "astronomical unit, day, solar mass",

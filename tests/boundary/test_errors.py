@@ -59,7 +59,7 @@ def test_messages() -> None:
     assert str(errors.ConvergenceError("gave up", 2.5)) == "gave up (at t = 2.5)"
     assert str(errors.ConvergenceError("gave up")) == "gave up"
     assert "bodies 3 and 4 are 1e-09 apart" in str(errors.CloseEncounter(1.5, (3, 4), 1e-9))
-    assert "body 3 is 1e-09 from a fixed centre" in str(errors.CloseEncounter(1.5, (3, 3), 1e-9))
+    assert "body 3 is 1e-09 from a fixed center" in str(errors.CloseEncounter(1.5, (3, 3), 1e-9))
     assert "trajectory" in str(errors.Interrupted("interrupted", trajectory=object()))
 
 

@@ -145,7 +145,7 @@ def _scene(recipe: Recipe) -> vv.Scene:
 
 
 def _radii(recipe: Recipe, position: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Spheres that almost reach their neighbours, and points; those of some members overlap, which is refused."""
+    """Spheres that almost reach their neighbors, and points; those of some members overlap, which is refused."""
     count = len(position)
     if not recipe.collisions or count < 2:
         return np.zeros(count)

@@ -35,13 +35,13 @@ def test_periods_of_a_pendulum(angle: str) -> None:
 @pytest.mark.parametrize("offset", [0.0, 1e6])
 def test_periods_of_small_swings_have_every_digit(swing: float, offset: float) -> None:
     """Energies of small swings differ in their last digits; the period knows nothing of that, nor of V = 0."""
-    with mpmath.workdps(30):
+    with mpmath.workdps(50):  # of which the difference in the action takes 17
         k2 = mpmath.sin(mpmath.mpf(swing) / 2) ** 2
         period = 4 * mpmath.ellipk(k2)
         action = 8 / mpmath.pi * (mpmath.ellipe(k2) - (1 - k2) * mpmath.ellipk(k2))
     pendulum = vv.Lagrangian(lambda q, v, _: v[0] ** 2 / 2 + np.cos(q[0]) + offset, ["theta"], position=[swing])
     assert pendulum.period() == pytest.approx(float(period), rel=4 * EPSILON)
-    assert pendulum.action_variable() == pytest.approx(float(action), rel=16 * EPSILON)
+    assert pendulum.action_variable() == pytest.approx(float(action), rel=16 * EPSILON, abs=0.0)
 
 
 def test_a_wide_swing_far_above_zero() -> None:
@@ -61,7 +61,8 @@ def test_the_period_is_the_slope_of_the_action() -> None:
         near = [PENDULUM.at(position=[angle + step]) for step in 1e-3 * np.array([-2, -1, 1, 2])]
         weights = np.array([1, -8, 8, -1])
         slope = weights @ [one.action_variable() for one in near] / (weights @ [one.energy for one in near])
-        assert 2 * np.pi * slope == pytest.approx(PENDULUM.at(position=[angle]).period(), rel=1e-9)
+        # Differences of fourth order with steps of 1e-3 leave 1e-12, a little more next to the top (measured 1.9e-12).
+        assert 2 * np.pi * slope == pytest.approx(PENDULUM.at(position=[angle]).period(), rel=1e-11)
 
 
 @pytest.mark.parametrize("speed", [2.1, 3.0, 10.0])
@@ -207,6 +208,7 @@ def test_the_flow_is_symplectic_and_its_derivative_is_one(name: str) -> None:
             moved[index] += step
             out = hamiltonian.at(position=moved[:n], momentum=moved[n:]).run(5.0)
             ends.append(np.concatenate([out.position[-1], out.momentum[-1]]))
+        # Differences with steps of 1e-5 leave h²/6 of the third derivative; measured 3.5e-8 of the largest.
         assert np.abs((ends[0] - ends[1]) / 2e-5 - jacobian[:, index]).max() <= 1e-7 * size**2
 
 

@@ -110,7 +110,8 @@ def test_a_spherical_pendulum_about_another_pole_and_by_places(pole: str) -> Non
         c[0] * s[1] * rate[0] + s[0] * c[1] * rate[1],
         s[0] * rate[0],
     ]
-    assert np.abs(velocity - exact).max() < 1e-8
+    # Differences with steps of 1e-6: rounding of 1e-16 over 2e-6; measured 5e-11.
+    assert np.abs(velocity - exact).max() < 3e-10
     if pole == "z":
         ball = vv.Lagrangian(
             lambda q, v, _: (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) / 2 - 9.81 * q[2],

@@ -24,7 +24,8 @@ def test_the_order_of_motions_that_are_not_linear(name: str, method: str) -> Non
     # At a polar angle that comes near to zero a step is longer than elsewhere.
     h = 0.125 if (name, order) == ("spherical_pendulum", 8) else STEPS[order]
     coarse, fine = (np.abs(states(system.run(2.0, method=method, dt=dt))[-1] - exact).max() for dt in (h, h / 2))
-    assert 1e-14 < fine < coarse < 1e-3
+    # Above round-off, and so small (at most 1.4e-4) that the next order is seen by 0.1 at most.
+    assert 1e-14 < fine < coarse < 4e-4
     assert math.log2(coarse / fine) == pytest.approx(order, abs=0.15)
 
 
@@ -88,6 +89,7 @@ def test_the_discrete_action_is_stationary(name: str, method: str) -> None:
     free[:, 0] += times
     slope = (S(free, 1e-3) - S(free, -1e-3)) / 2e-3
     wanted = float(out.momentum[-1] @ free[-1] - out.momentum[0] @ free[0])
+    # The difference of second order leaves ε²/6 of the third derivative of S: measured 1.2e-5.
     assert slope == pytest.approx(wanted, abs=3e-5 * (1 + np.abs(out.momentum).max()))
 
 

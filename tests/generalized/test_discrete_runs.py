@@ -55,7 +55,8 @@ def test_a_section_is_met() -> None:
     exact = systems()["pendulum"].poincare("theta", t=50.0)
     assert len(swing.t) == len(exact.t) > 3
     assert np.abs(swing.position).max() <= 1e-13
-    assert np.abs(swing.t - exact.t).max() <= 1e-9
+    # A step of 0.1 of order 8 is exact to rounding here: of times up to 50 measured 2.1e-14, three spacings.
+    assert np.abs(swing.t - exact.t).max() <= 1e-13
 
 
 def test_it_goes_on_and_from_another_time() -> None:

@@ -116,5 +116,5 @@ def test_what_is_no_picture_is_refused_by_name(wrong: dict[str, Any]) -> None:
 
 def test_a_system_that_does_not_know_its_points_says_what_to_give() -> None:
     own = vv.Lagrangian(lambda _q, v, _t: v[0] ** 2 / 2, ["x"], position=[1.0])
-    with pytest.raises(vv.InvalidInput, match=r"^points: nobody said .*\['x'\].*points=lambda q, t"):
+    with pytest.raises(vv.InvalidInput, match=r"^points: the points of .*\['x'\].*points=lambda q, t"):
         own.run(t=1.0).animate()

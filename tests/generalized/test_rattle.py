@@ -73,7 +73,8 @@ def test_the_order(name: str, method: str) -> None:
     exact = states(system.run(2.0, rtol=1e-15))[-1]
     h = STEPS[order]
     coarse, fine = (np.abs(states(system.run(2.0, method=method, dt=dt))[-1] - exact).max() for dt in (h, h / 2))
-    assert 1e-14 < fine < coarse < 1e-3
+    # Above round-off, and so small (at most 3.4e-5) that the next order is seen by 0.09 at most.
+    assert 1e-14 < fine < coarse < 1e-4
     assert math.log2(coarse / fine) == pytest.approx(order, abs=0.15)
 
 
@@ -179,7 +180,8 @@ def test_the_map_is_symplectic_on_the_sphere(method: str) -> None:
         before, after = jacobian(canonical(q, v)), jacobian(canonical(out.position[:, -1], out.velocity[:, -1]))
         return float(np.abs(after.T @ J @ after - before.T @ J @ before).max())
 
-    assert defect(method) <= 1e-8
+    # Rounding over twice the step of the differences; measured 1e-12.
+    assert defect(method) <= 1e-11
     assert defect("rk4") > 1e-6
 
 

@@ -27,14 +27,16 @@ def test_a_body_on_a_spring_sticks_where_friction_holds_it(rtol: float) -> None:
     assert stuck.value.time == pytest.approx(5 * np.pi, abs=2e-3)
     out = stuck.value.trajectory
     assert isinstance(out, vv.generalized.GeneralizedTrajectory)
-    assert out["x"][-1] == pytest.approx(-0.05, abs=1e-3)
+    # The last output is up to 0.1 before the end, where x is as flat as 1 − cos; measured 5.7e-6.
+    assert out["x"][-1] == pytest.approx(-0.05, abs=2e-5)
     assert out.steps < 20_000
 
 
 def test_turns_on_the_way_are_no_sticking() -> None:
     """Before it sticks, the velocity passes zero four times, each time beyond the reach of friction."""
     out = sliding(1.05).run(np.pi * np.arange(5.0))
-    np.testing.assert_allclose(out["x"], [1.05, -0.85, 0.65, -0.45, 0.25], atol=2e-3)
+    # The first speed of 1e-3 changes the amplitude by 1e-6 / 2; measured 3e-7.
+    np.testing.assert_allclose(out["x"], [1.05, -0.85, 0.65, -0.45, 0.25], atol=1e-6)
 
 
 def test_copies_that_stick_end_alone() -> None:
@@ -51,7 +53,8 @@ def test_a_valley_of_two_slopes_is_no_friction() -> None:
     for amplitude in (1.0, 1e-6):
         valley = vv.Lagrangian(lambda q, v, t: v @ v / 2 - abs(q[0]), ["x"], position=[amplitude])
         period = 4 * (2 * amplitude) ** 0.5
-        assert valley.run(3 * period)["x"][-1] == pytest.approx(amplitude, rel=1e-8)
+        # Six kinks cost a step's tolerance each; measured 1.1e-10.
+        assert valley.run(3 * period)["x"][-1] == pytest.approx(amplitude, rel=1e-9, abs=0.0)
 
 
 def test_a_start_at_rest_has_no_direction_of_friction() -> None:

@@ -87,7 +87,8 @@ def test_equal_tolerances_cost_what_they_cost_in_scipy(method: str, rtol: float)
 )
 def test_what_a_function_may_return(form: Callable[[Sequence[float]], Any]) -> None:
     out = vv.solve_ivp(lambda t, y: form([float(y[1]), float(-y[0])]), (0, 1), [1, 0])
-    assert out.y[0, -1] == pytest.approx(np.cos(1), abs=1e-3)
+    # SciPy's default tolerance is 1e-3 a step; measured 2.4e-5.
+    assert out.y[0, -1] == pytest.approx(np.cos(1), abs=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +170,8 @@ def test_ctrl_c_gives_what_was_computed(kind: str) -> None:
     assert isinstance(out, vv.OdeResult)
     assert not out.success
     assert out.t.size > 100
-    assert np.allclose(out.y[0, :100], np.cos(out.t[:100]), atol=1e-3)
+    # A tolerance of 1e-6 for each of a hundred steps; measured 4.4e-5.
+    assert np.allclose(out.y[0, :100], np.cos(out.t[:100]), rtol=0.0, atol=2e-4)
 
 
 # Compiled functions ---------------------------------------------------------------------------------------------------
@@ -219,17 +221,19 @@ def test_a_compiled_function_gives_the_bits_of_the_same_in_python(name: str) -> 
 
 def test_a_compiled_function_gets_its_data() -> None:
     out = vv.solve_ivp(COMPILED_WITH_DATA, (0, 1), [1, 0], args=np.array([2.0]), rtol=1e-9, atol=1e-9)
-    assert out.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-7)
+    # Some steps of 1e-9; measured 2e-10.
+    assert out.y[0, -1] == pytest.approx(np.cos(2.0), abs=2e-9)
 
 
 def test_a_low_level_callable() -> None:
     scipy = pytest.importorskip("scipy")
     plain = scipy.LowLevelCallable(COMPILED)
-    assert vv.solve_ivp(plain, (0, 1), [1, 0]).y[0, -1] == pytest.approx(np.cos(1.0), abs=1e-3)
+    # The default tolerance is 1e-3, and 1e-6 below: measured 2.4e-5 and 9.1e-9.
+    assert vv.solve_ivp(plain, (0, 1), [1, 0]).y[0, -1] == pytest.approx(np.cos(1.0), abs=1e-4)
     frequency = (ctypes.c_double * 1)(2.0)
     with_data = scipy.LowLevelCallable(COMPILED_WITH_DATA, ctypes.cast(frequency, ctypes.c_void_p))
     out = vv.solve_ivp(with_data, (0, 1), [1, 0], rtol=1e-6)
-    assert out.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-4)
+    assert out.y[0, -1] == pytest.approx(np.cos(2.0), abs=1e-7)
     with pytest.raises(vv.InvalidInput, match=r"args: .*user_data"):
         vv.solve_ivp(with_data, (0, 1), [1, 0], args=np.array([2.0]))
 
@@ -365,7 +369,8 @@ def test_a_run_that_cannot_go_on_says_so_and_gives_what_it_has() -> None:
     assert out.status == -1
     assert not out.success
     assert "step size is less than spacing" in out.message
-    assert out.t[-1] == pytest.approx(1.0, abs=1e-6)
+    # The pole of y' = y² at a tolerance of 1e-8: measured 1.3e-7 beyond it.
+    assert out.t[-1] == pytest.approx(1.0, abs=5e-7)
     assert np.isfinite(out.y).all()
     with np.errstate(over="ignore", invalid="ignore"):
         growing = vv.solve_ivp(lambda t, y: y**2, (0, 9), [1.0], "rk4", dt=0.5)

@@ -124,8 +124,9 @@ def test_coasting_takes_the_time_that_drag_needs(law: str) -> None:
     direction = np.array([0.36, 0.48, 0.8])
     scene = vv.Scene(vv.Particles([m], [[0.0, 0.0, 0.0]], [fast * direction]), vv.Drag(rho, mu, a, law))
     out = scene.run(t=time, rtol=1e-11)
-    assert np.allclose(out.velocity[-1, 0], slow * direction, rtol=1e-8)
-    assert np.allclose(out.position[-1, 0], way * direction, rtol=1e-8)
+    # Of a tolerance of 1e-11 a step, at laws that bend: measured 4.5e-11 and 1.2e-10.
+    assert np.allclose(out.velocity[-1, 0], slow * direction, rtol=5e-10, atol=0.0)
+    assert np.allclose(out.position[-1, 0], way * direction, rtol=5e-10, atol=0.0)
 
 
 def test_the_energy_that_is_lost_is_the_work_of_drag() -> None:
@@ -139,7 +140,8 @@ def test_the_energy_that_is_lost_is_the_work_of_drag() -> None:
     powers = [float(-drag(force, float(np.linalg.norm(u)), m) * np.linalg.norm(u)) for u in v]
     assert max(powers) < 0.0
     energy = 0.5 * m * (out.velocity[:, 0] ** 2).sum(1) + m * g * out.position[:, 0, 2]
-    assert energy[-1] - energy[0] == pytest.approx(2.0 * float(np.dot(weights, powers)), rel=1e-9)
+    # Gauss's sum of 60 points leaves nothing of a power this smooth: the tolerance of the run; measured 5e-14.
+    assert energy[-1] - energy[0] == pytest.approx(2.0 * float(np.dot(weights, powers)), rel=1e-12)
     assert (np.diff(energy) < 0).all()
 
 

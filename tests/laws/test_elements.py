@@ -21,7 +21,7 @@ def test_what_a_center_of_mass_is() -> None:
             )
             assert np.allclose(bodies.position[new] - place, r, rtol=0, atol=1e-15)
             assert np.allclose(bodies.velocity[new] - rate, v, rtol=0, atol=4e-15)
-        # And the way back, about the centre of mass of all others.
+        # And the way back, about the center of mass of all others.
         scene = vv.Scene(bodies, vv.Gravity(2.0))
         place, rate = bodies[[0, 1, 3]].center_of_mass()
         found = scene.elements(2, about="center_of_mass")

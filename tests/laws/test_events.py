@@ -36,6 +36,7 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
     # Located to round-off: r·v changes by about 1 in a unit of time, and t has the spacing 4e-15.
     assert np.abs((relative * velocity).sum(axis=1)).max() < 3e-14
     distances = np.linalg.norm(relative, axis=1)
+    # What the method makes of the ellipse: of order 1 half a percent, of order 2 at most 3.5e-5.
     np.testing.assert_allclose(distances[1::2], 0.7, rtol=1e-4 if order > 1 else 1e-2)
     np.testing.assert_allclose(distances[::2], 1.3, rtol=1e-4 if order > 1 else 1e-2)
 
@@ -72,7 +73,8 @@ def test_two_zeros_in_one_step_are_found(method: str, depth: float) -> None:
         found = out.events.t[out.events.t > 0.5 * PERIOD]
         assert len(found) == zeros
         if zeros:
-            np.testing.assert_allclose(found.mean(), apart.t[0], atol=1e-5)
+            # Between its nodes a method has its dense order: of the roughest 8e-7.
+            np.testing.assert_allclose(found.mean(), apart.t[0], rtol=0.0, atol=3e-6)
 
 
 def test_a_fly_by_on_one_long_step_is_found() -> None:

@@ -40,7 +40,7 @@ def test_two_gravities_for_two_bodies(method: str) -> None:
     pair = vv.Particles([1.0, 1.0], [[-0.5, 0, 0], [0.5, 0, 0]], [[0, -1.0, 0], [0, 1.0, 0]])
     how = {} if method == "auto" else {"method": method, "dt": 1e-3}
     out = vv.Scene(pair, vv.Gravity(1.0), vv.Gravity(1.0)).run(t=[0.0, 0.5, 1.0], **how)
-    # A circle: v² = G m / (2 r) of each about the centre, 1 = 2 · 1 · 1/(4 · 0.5). Leapfrog's dt² phase error is 1e-7.
+    # A circle: v² = G m / (2 r) of each about the center, 1 = 2 · 1 · 1/(4 · 0.5). Leapfrog's dt² phase error is 1e-7.
     assert np.allclose(np.linalg.norm(out.position, axis=-1), 0.5, rtol=0, atol=1e-6)
 
 

@@ -174,7 +174,7 @@ def test_there_and_back(
     about=st.sampled_from(["jacobi", "center_of_mass", 0]),
 )
 def test_the_way_back_is_about_the_same(e: float, nu: float, masses: list[float], about: str | int) -> None:
-    """Elements are about what bodies were put about; of one body about the others' centre of mass, too."""
+    """Elements are about what bodies were put about; of one body about the others' center of mass, too."""
     masses = masses[:1] if about == "center_of_mass" else masses
     binary = vv.Particles.from_elements(1.0, 0.3, G=1.0, semi_major_axis=0.1)
     particles = vv.Particles.from_elements(

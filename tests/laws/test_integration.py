@@ -31,7 +31,7 @@ def test_two_bodies_closed_form_and_integration(
     except vv.CloseEncounter:
         # Head-on: only the closed form passes.
         assume(False)
-    # A grazing pericentre amplifies the tolerance; the energy says how close they came.
+    # A grazing pericenter amplifies the tolerance; the energy says how close they came.
     relative = closed.velocity[:, 1] - closed.velocity[:, 0]
     amplification = 1.0 + float(np.abs(relative).max()) ** 4
     assert distance(closed.position, integrated.position) < 2e-10 * amplification
@@ -81,15 +81,16 @@ def test_central_fields(
     velocity: NDArray[np.float64],
     distance: float,
 ) -> None:
-    """Energy and angular momentum about the centre, and a motion that stays in its plane."""
+    """Energy and angular momentum about the center, and a motion that stays in its plane."""
     direction = direction + np.array([2.0, 0.0, 0.0])
     position = distance * direction / np.linalg.norm(direction)
-    # Enough sideways motion to keep away from the centre.
+    # Enough sideways motion to keep away from the center.
     velocity = velocity + 0.7 * np.cross([0.0, 0.0, 1.0], direction)
     scene = vv.Scene(vv.Particles([1.0], position[None], velocity[None]), vv.CentralField(potential))
     out = scene.run(t=np.linspace(0.0, 2.0, 5), method="dop853", rtol=1e-12)
     table = out.conservation()
-    assert table.energy.max * table.energy.scale < 1e-9
-    assert table.angular_momentum.max * table.angular_momentum.scale < 1e-9
+    # Some steps of a tolerance of 1e-12, magnified where the path comes near to the center; measured 3e-12.
+    assert table.energy.max * table.energy.scale < 1e-10
+    assert table.angular_momentum.max * table.angular_momentum.scale < 1e-10
     normal = scene.invariants().angular_momentum
     assert np.abs(out.position[:, 0] @ (normal / np.linalg.norm(normal))).max() < 1e-10

@@ -79,7 +79,7 @@ def test_a_mean_anomaly_is_the_time_since_the_pericenter(
     a = q / (1.0 + e if mu < 0.0 else abs(1.0 - e))
     start = vv.orbits.state(mu, pericenter=q, eccentricity=e)
     r1, v1 = vv.orbits.propagate(mu, *start, mean * np.sqrt(a**3 / abs(mu)))
-    # The start is rounded: its period is known to ε/|1 − e|, its pericentre passage carries that for |M| ≤ 3.
+    # The start is rounded: its period is known to ε/|1 − e|, its pericenter passage carries that for |M| ≤ 3.
     assert size(r1 - r) <= 40 * EPSILON / abs(1.0 - e) * (1.0 + e) * size(r)
     assert size(v1 - v) <= 40 * EPSILON / abs(1.0 - e) * (1.0 + e) * np.sqrt(abs(mu) / q) * (1.0 + e)
     if e < 1.0:
@@ -95,7 +95,7 @@ def test_a_mean_anomaly_is_the_time_since_the_pericenter(
 
 
 def test_the_mean_anomaly_of_a_parabola_is_barkers() -> None:
-    # D + D³/3 = 4/3 at D = 1, a right angle from the pericentre, where r = 2q.
+    # D + D³/3 = 4/3 at D = 1, a right angle from the pericenter, where r = 2q.
     r, v = vv.orbits.state(2.0, pericenter=0.5, eccentricity=1.0, mean_anomaly=4 / 3)
     assert np.allclose(r, [0.0, 1.0, 0.0], atol=4 * EPSILON)
     assert np.allclose(v, [-np.sqrt(2.0), np.sqrt(2.0), 0.0], rtol=4 * EPSILON, atol=0)
@@ -117,7 +117,7 @@ def test_energy_angular_momentum_and_lenz_vector_stay(orbit: tuple[float, Vector
 
 @given(orbit=ellipses(), t=st.floats(-20.0, 20.0))
 @settings(max_examples=300)
-def test_first_law_the_path_is_a_conic_with_the_centre_in_a_focus(
+def test_first_law_the_path_is_a_conic_with_the_center_in_a_focus(
     orbit: tuple[float, Vector, Vector], t: float
 ) -> None:
     """The sum of the distances from the two foci is 2a."""
@@ -173,7 +173,7 @@ def test_velocities_lie_on_the_hodograph(orbit: tuple[float, Vector, Vector], t:
 @given(
     orbit=orbits(),
     masses=st.tuples(st.floats(0.0, 3.0), st.floats(0.1, 3.0)),
-    centre=vectors(10.0),
+    center=vectors(10.0),
     drift=vectors(1.0),
     t0=st.floats(-4.0, 4.0),
     t=st.floats(-20.0, 20.0),
@@ -182,7 +182,7 @@ def test_velocities_lie_on_the_hodograph(orbit: tuple[float, Vector, Vector], t:
 def test_a_scene_of_two_bodies_is_the_relative_orbit(
     orbit: tuple[float, Vector, Vector],
     masses: tuple[float, float],
-    centre: Vector,
+    center: Vector,
     drift: Vector,
     t0: float,
     t: float,
@@ -190,7 +190,7 @@ def test_a_scene_of_two_bodies_is_the_relative_orbit(
     _, r, v = orbit
     m = np.array(masses)
     total = float(m.sum())
-    positions, velocities = np.array([centre, centre + r]), np.array([drift, drift + v])
+    positions, velocities = np.array([center, center + r]), np.array([drift, drift + v])
     out = vv.Scene(vv.Particles(m, positions, velocities), vv.Gravity(1.0), t0=t0).run(t=[t0, t])
     assert np.array_equal(out.position[0], positions)
     assert np.array_equal(out.velocity[0], velocities)
@@ -207,7 +207,7 @@ def test_a_scene_of_two_bodies_is_the_relative_orbit(
 
 @given(mu=st.floats(0.1, 3.0), r=vectors(2.0), v=vectors(1.5), t=st.floats(-20.0, 20.0))
 @settings(max_examples=100)
-def test_a_fixed_centre_is_the_same_to_the_bit(mu: float, r: Vector, v: Vector, t: float) -> None:
+def test_a_fixed_center_is_the_same_to_the_bit(mu: float, r: Vector, v: Vector, t: float) -> None:
     assume(size(r) > 1e-2)
     field = vv.CentralField(vv.potentials.Coulomb(-mu))
     out = vv.Scene(vv.Particles([1.0], [r], [v]), field).run(t=t)

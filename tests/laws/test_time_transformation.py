@@ -73,7 +73,8 @@ def test_the_energy_does_not_drift(monitor: str) -> None:
     error = out.energy / out.energy[0] - 1.0
     early, late = (np.abs(part).max() for part in np.split(error, [400])[:2])
     assert late < 1.05 * early
-    assert 1e-9 < early < 1e-3
+    # There is an error of fourth order to see (2.9e-5 at 40 steps to a turn), which does not grow.
+    assert 1e-6 < early < 1e-4
 
 
 def test_two_close_passages_of_the_pythagorean_problem() -> None:
@@ -131,7 +132,8 @@ def test_a_fixed_center_and_other_forces() -> None:
     scene = vv.Scene(start, field, vv.DrivenForce([0.01, 0.02, 0.0], frequency=0.7))
     out = scene.run(t, method="kahan_li8", dt=0.02, time_transformation="distance")
     reference = scene.run(t, method="dop853", rtol=1e-13)
-    assert np.abs(out.position - reference.position).max() < 1e-9
+    # Both errors, of order 8 and of rtol; measured 4e-12.
+    assert np.abs(out.position - reference.position).max() < 2e-11
 
 
 def test_backward_and_back() -> None:
@@ -154,7 +156,8 @@ def test_an_event_is_found_on_the_solution() -> None:
         3.2 * PERIOD, method="kahan_li8", dt=0.02, time_transformation="potential_energy", events=[event]
     )
     times = out.events.t
-    assert np.allclose(times, PERIOD * 0.5 * np.arange(len(times)) + times[0], atol=1e-9)
+    # Rounding of times up to 17: two spacings of 3.6e-15.
+    assert np.allclose(times, PERIOD * 0.5 * np.arange(len(times)) + times[0], rtol=0.0, atol=8e-15)
     assert len(times) in (6, 7)
 
 

@@ -45,7 +45,8 @@ def test_what_loses_energy_is_measured_against_what_it_should_lose() -> None:
         advice = scene.advise(end, accuracy=1e-8)
         exact = scene.run(end, method="dop853", rtol=2.3e-14, record="energy").energy[-1]
         found = scene.run(end, record="energy", **advice.how).energy[-1]
-        assert abs(found / exact - 1.0) < 3e-8
+        # An accuracy of 1e-8 was asked for; measured 2e-9.
+        assert abs(found / exact - 1.0) < 1e-8
 
 
 def test_a_closed_form_needs_no_method() -> None:

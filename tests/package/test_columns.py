@@ -122,7 +122,7 @@ def test_energy_far_from_the_origin_does_not_drift_by_the_sum(N: int) -> None:
 
 @pytest.mark.parametrize("potential", [vv.potentials.Coulomb(-1.0), vv.potentials.Yukawa(k=2.0, length=0.7)])
 def test_the_virial_of_a_central_field_is_that_of_its_force(potential: vv.potentials.Coulomb) -> None:
-    """Σ r·F by its definition, the centre elsewhere; attraction pulls in: negative about the centre itself."""
+    """Σ r·F by its definition, the center elsewhere; attraction pulls in: negative about the center itself."""
     rng = np.random.default_rng(4)
     center = np.array([0.3, -0.2, 0.5])
     particles = vv.Particles(rng.random(5) + 0.5, rng.normal(size=(5, 3)))

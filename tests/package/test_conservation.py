@@ -37,7 +37,7 @@ def test_drift_of_a_made_up_motion() -> None:
 
 def test_table_prints_every_row() -> None:
     text = str(ORBIT.scene.run(t=[0.0, 1.0, 2.0]).conservation(about="center_of_mass"))
-    for word in ("energy", "momentum", "angular momentum (centre of mass)", "centre of mass", "virial", "max", "rms"):
+    for word in ("energy", "momentum", "angular momentum (center of mass)", "center of mass", "virial", "max", "rms"):
         assert word in text
 
 
@@ -99,7 +99,7 @@ def test_angular_momentum_about_moving_and_fixed_points() -> None:
 
 
 def test_torque_balances_angular_momentum() -> None:
-    """K about a point is the rate of L about it, and K about the centre of mass the rate of the spin."""
+    """K about a point is the rate of L about it, and K about the center of mass the rate of the spin."""
     rng = np.random.default_rng(3)
     bodies = vv.Particles([1.0, 2.0, 0.5], rng.normal(size=(3, 3)), rng.normal(size=(3, 3)))
     scene = vv.Scene(bodies, vv.Gravity(1.0, softening=0.3), vv.UniformField([0.3, -0.2, -1.0]))

@@ -49,7 +49,8 @@ def test_the_steps_of_an_ensemble_are_those_of_all_copies() -> None:
     copies = scene.ensemble(mass=scene.particles.mass * np.linspace(1.0, 1.001, 100)[:, None])
     cost = copies.plan(5.0).cost()
     assert cost is not None
-    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.1
+    # A copy takes 37.4 steps on the average, of which a stretch tells whole ones (measured 1.2 %).
+    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.04
 
 
 def test_copies_with_forces_of_their_own_are_tried_with_them() -> None:
@@ -57,7 +58,8 @@ def test_copies_with_forces_of_their_own_are_tried_with_them() -> None:
     copies = scene.ensemble(parameters={"Gravity": {"G": np.linspace(0.9, 1.1, 50)}})
     cost = copies.plan(5.0).cost()
     assert cost is not None
-    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.2
+    # A stretch of each copy is a part of its motion, whose steps change along the orbit (measured 8 %).
+    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.15
 
 
 def test_a_closed_form_takes_no_steps() -> None:
@@ -109,4 +111,5 @@ def test_bodies_with_steps_of_their_own_are_counted_by_more_than_one_each(massle
     scene = vv.Scene(vv.Particles([1.0, 1e-6, 1e-6, *[0.0] * massless], place, velocity), vv.Gravity(1.0))
     cost = scene.plan(t=100.0).cost()
     assert cost is not None
-    assert cost.steps == pytest.approx(scene.run(t=100.0).stats.steps, rel=0.25)
+    # Circles, whose steps do not change: a last one is broken (measured: 0, 0 and 0.7 %).
+    assert cost.steps == pytest.approx(scene.run(t=100.0).stats.steps, rel=0.03)

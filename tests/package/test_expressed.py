@@ -167,7 +167,8 @@ def test_it_is_a_value_like_any_other(tmp_path: Path) -> None:
     out = scene.run(t=np.linspace(0.0, 5.0, 11), rtol=1e-11)
     out.save(tmp_path / "run.npz")
     assert vv.load(tmp_path / "run.npz").final.forces == scene.forces
-    assert np.ptp(out.energy) < 1e-9
+    # A tolerance of 1e-11 a step; measured 1.3e-12.
+    assert np.ptp(out.energy) < 1e-11
 
 
 @pytest.mark.parametrize(
@@ -212,7 +213,8 @@ def test_what_becomes_level_has_no_force_there() -> None:
     assert ways[0].angle == pytest.approx(ways[1].angle, abs=1e-12)
     assert ways[0].derivative == pytest.approx(ways[1].derivative, rel=1e-9, abs=1e-15)
     rainbows = [vv.scattering.rainbows(each, energy=30.0) for each in (well, same)]
-    assert rainbows[0][0].impact_parameter == pytest.approx(rainbows[1][0].impact_parameter, rel=1e-9)
+    # The extremum of one function in two forms; measured 1.8e-15.
+    assert rainbows[0][0].impact_parameter == pytest.approx(rainbows[1][0].impact_parameter, rel=1e-13)
     far = vv.Scene(vv.Particles([1.0], [[500.0, 0, 0]], [[0, 1.0, 0]]), vv.CentralField(well)).run(10.0)
     assert far.position[-1, 0].tolist() == [500.0, 10.0, 0.0]
 

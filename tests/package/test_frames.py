@@ -1,4 +1,4 @@
-"""Changes of frame and of units, and the centre of mass."""
+"""Changes of frame and of units, and the center of mass."""
 
 import numpy as np
 import pytest

@@ -269,3 +269,23 @@ def test_completion_shows_public_names_alone(name: str) -> None:
     assert shown - {"__version__"} == set(module.__all__)
     assert not any(each.startswith("_") for each in module.__all__)
     assert all(hasattr(module, each) for each in module.__all__)
+
+
+def public_named_tuples() -> list[type[Any]]:
+    rooms = [vv, *(getattr(vv, room) for room in vv._ROOMS)]
+    kinds = [getattr(room, name) for room in rooms for name in room.__all__]
+    return [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, tuple)]
+
+
+@pytest.mark.parametrize("kind", public_named_tuples(), ids=lambda kind: kind.__name__)
+def test_named_tuples_are_short_in_words(kind: Any) -> None:
+    """In one line with their names, however many numbers they hold."""
+    text = repr(kind(*(np.arange(3000.0).reshape(1000, 3) for _ in kind._fields)))
+    assert text.startswith(f"{kind.__name__}({kind._fields[0]}=")
+    assert "<(1000, 3) from 0 to 2999>" in text
+    assert "\n" not in text
+    assert len(text) <= 300
+
+
+def test_there_are_named_tuples() -> None:
+    assert len(public_named_tuples()) >= 7

@@ -177,5 +177,6 @@ def test_a_line_of_three_breaks_as_fast_as_it_says() -> None:
     apart = [scene.run(t=times, method="verner98", rtol=2.5e-14).position for scene in (problem.scene, disturbed)]
     growth = np.linalg.norm(apart[1] - apart[0], axis=(1, 2))
     ((_, factor),) = problem.conditioning
-    assert growth[1] / growth[0] == pytest.approx(factor**0.125, rel=0.1)
-    assert growth[2] / growth[1] == pytest.approx(factor**0.125, rel=0.1)
+    # The other modes of the disturbance are less and less of it; measured 2.5 % off, then 0.2 %.
+    assert growth[1] / growth[0] == pytest.approx(factor**0.125, rel=0.05)
+    assert growth[2] / growth[1] == pytest.approx(factor**0.125, rel=0.01)

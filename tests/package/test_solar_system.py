@@ -42,7 +42,7 @@ APPROXIMATE = {
     ),
 }
 # Its nominal errors of longitude and latitude in seconds of arc and of the distance in 1000 km, rounded. Neptune's are
-# more than twice as large: its place is held to DE430 below. "Earth" is the barycentre of Earth and Moon in both.
+# more than twice as large: its place is held to DE430 below. "Earth" is the barycenter of Earth and Moon in both.
 ERRORS = {
     "Mercury": (15, 1, 1),
     "Venus": (20, 1, 4),
@@ -139,7 +139,8 @@ def test_the_earth_s_orbit_is_the_ecliptic_and_its_year_the_sidereal() -> None:
     """The plane of J2000, thirty years off at 47″ a century; 365.25636 days, but for what Jupiter does to the year."""
     earth = vv.datasets.solar_system().scene.elements("Earth", about="Sun")
     assert float(np.degrees(earth.inclination)) * 3600.0 < 47.0 * 0.31
-    assert abs(float(earth.period) - 365.25636) < 2e-3
+    # Osculating elements, and mean ones that are printed: Jupiter pulls by 1e-5 of the Sun. Measured 3.5e-4, 6e-6.
+    assert abs(float(earth.period) - 365.25636) < 1e-3
     assert abs(float(earth.eccentricity) - 0.01671) < 2e-5
 
 

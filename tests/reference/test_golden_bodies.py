@@ -1,4 +1,4 @@
-"""Golden numbers of several bodies and their centre of mass."""
+"""Golden numbers of several bodies and their center of mass."""
 
 from typing import Any
 
@@ -62,7 +62,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     # Velocities are of size 2 along the relative orbit.
     close(out.position[-1], [expected["r1"], expected["r2"]], scale=1.0, rel=5e-13)
     close(out.velocity[-1], [expected["v1"], expected["v2"]], scale=2.0, rel=5e-13)
-    # The centre of mass moves uniformly, whatever the two do about it.
+    # The center of mass moves uniformly, whatever the two do about it.
     assert out.conservation().center_of_mass.max < 1e-15
     start = scene.center_of_mass_frame()
     back = start.run(t=expected["period"]).position[-1]

@@ -1,4 +1,4 @@
-"""Golden numbers of the motion of one body and of a body about a centre."""
+"""Golden numbers of the motion of one body and of a body about a center."""
 
 from typing import Any
 
@@ -139,7 +139,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
 
 @golden("G7.25-repulsive")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    """From far away at the impact parameter p towards the repelling centre, and far away again."""
+    """From far away at the impact parameter p towards the repelling center, and far away again."""
     far, u, gamma = 1e9, given["u"], given["gamma"]
     speed = np.sqrt(u * u - 2.0 * gamma / (given["m"] * far))
     lever = given["p"] * u / speed
@@ -174,7 +174,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
 
 @golden("G7-unit-mass")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    """Dividing γ, l, E by m leaves the orbit: start both at pericentre and compare."""
+    """Dividing γ, l, E by m leaves the orbit: start both at pericenter and compare."""
     a, e = expected["a"], expected["e"]
     r = a * (1 - e)
     with_mass = attracted({"gamma": given["gamma"], "m": given["m"], "r": [r], "v": [0.0, given["l"] / given["m"] / r]})

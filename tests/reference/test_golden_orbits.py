@@ -194,7 +194,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(vv.orbits.period(mu, a), expected["period"])
     r, v = vv.orbits.state(mu, pericenter=a, eccentricity=0.0)
     close(vv.orbits.conic(expected["mu"], given["G"] * m1 * m2, r, v).energy, expected["E_rel"])
-    # The distances from the centre of mass, after a third of a turn in a scene of both bodies.
+    # The distances from the center of mass, after a third of a turn in a scene of both bodies.
     share = m2 / (m1 + m2)
     bodies = vv.Particles([m1, m2], [-share * r, (1 - share) * r], [-share * v, (1 - share) * v])
     later = vv.Scene(bodies, vv.Gravity(given["G"])).run(t=expected["period"] / 3).position[-1]
@@ -211,10 +211,10 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(elements.eccentricity, expected["e"])
     close(elements.period, expected["period"])
     relative, rate = vv.orbits.propagate(mu, r[1] - r[0], v[1] - v[0], given["t"])
-    centre, drift = (m @ r + given["t"] * (m @ v)) / m.sum(), m @ v / m.sum()
+    center, drift = (m @ r + given["t"] * (m @ v)) / m.sum(), m @ v / m.sum()
     share = np.array([[-m[1]], [m[0]]]) / m.sum()
     wanted = [[expected[name + "1"], expected[name + "2"]] for name in "rv"]
-    close(centre + share * relative, wanted[0])
+    close(center + share * relative, wanted[0])
     close(drift + share * rate, wanted[1], scale=1.0)
     out = vv.Scene(vv.Particles(m, r, v), vv.Gravity(given["G"])).run(t=given["t"])
     close(out.position[-1], wanted[0])

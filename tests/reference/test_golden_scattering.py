@@ -36,9 +36,9 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     m1, m2, u, psi = (given[name] for name in ("m1", "m2", "u", "psi"))
     before = vv.Scene(vv.Particles([m1, m2], [[0, 0, 0], [1, 0, 0]], [[u, 0, 0], [0, 0, 0]]))
-    centre = before.center_of_mass_frame().particles.velocity[:, 0]
+    center = before.center_of_mass_frame().particles.velocity[:, 0]
     close(before.particles.center_of_mass()[1][0], expected["V"])
-    close(np.abs(centre), [expected["v1_zm"], expected["v2_zm"]])
+    close(np.abs(center), [expected["v1_zm"], expected["v2_zm"]])
     theta1 = vv.scattering.lab_angle(psi, mass_ratio=m1 / m2)
     theta2 = vv.scattering.recoil_angle(psi)
     share = vv.scattering.energy_transfer(psi, mass_ratio=m1 / m2)
@@ -169,7 +169,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
 @golden("G8.39-lennard-jones-b2")
 @golden("G8.39-yukawa")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    """A unit mass flies past the fixed centre; V is below 1e-14 where it starts and where it ends."""
+    """A unit mass flies past the fixed center; V is below 1e-14 where it starts and where it ends."""
     energy, b, far = given["E"], given["b"], 300.0
     if "lam" in given:
         potential: vv.potentials.Potential = vv.potentials.Yukawa(given["k"], given["lam"])

@@ -21,7 +21,7 @@ def step(method: vv.Method, dt: float) -> dict[str, Any]:
 
 COPIES = 36
 
-# Random places, among them some next to the centre, where the step is far too long: bits are looked at here.
+# Random places, among them some next to the center, where the step is far too long: bits are looked at here.
 pytestmark = pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")
 
 
@@ -40,7 +40,7 @@ ENSEMBLES = {
     "three bodies": ensemble([1.0, 0.5, 0.25], GRAVITY),
     "massless bodies, too": ensemble([1.0, 0.5, 0.0, 0.0], GRAVITY),
     "more bodies than lanes": ensemble([1.0, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.5, 0.125, 0.0], GRAVITY),
-    "a fixed centre": ensemble([1.0, 1.0], GRAVITY, vv.CentralField(vv.potentials.Yukawa(k=-3.0, length=2.0))),
+    "a fixed center": ensemble([1.0, 1.0], GRAVITY, vv.CentralField(vv.potentials.Yukawa(k=-3.0, length=2.0))),
 }
 
 
@@ -48,7 +48,7 @@ ENSEMBLES = {
 @pytest.mark.parametrize("name", ENSEMBLES)
 @pytest.mark.parametrize("copies", [2, 8, 9, 15, 16, 17, 24, COPIES])
 def test_a_copy_is_the_same_alone(name: str, copies: int, method: vv.Method) -> None:
-    if method.name == "taylor" and name == "a fixed centre":
+    if method.name == "taylor" and name == "a fixed center":
         pytest.skip("a Yukawa field has no Taylor series")
     run: dict[str, Any] = {"t": [0.5, 1.02], "method": method.name} | step(method, 0.05)
     every = ENSEMBLES[name]

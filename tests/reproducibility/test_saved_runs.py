@@ -226,7 +226,7 @@ def test_what_makes_no_sense_is_refused_before_anything_is_written(tmp_path: Pat
     with pytest.raises(vv.InvalidInput, match="save_every: an ensemble is not written"):
         scene.ensemble(mass=np.ones((3, 3))).run(t=1.0, save_every=0.5, save_to=folder)
     scene.run(t=1.0, save_every=0.5, save_to=folder)
-    with pytest.raises(vv.InvalidInput, match=r"save_to: there is a run in .*; visviva\.resume goes on with it"):
+    with pytest.raises(vv.InvalidInput, match=r"save_to: there is a run in .*; visviva\.resume continues it"):
         scene.run(t=1.0, save_every=0.5, save_to=folder)
 
 

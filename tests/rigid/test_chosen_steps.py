@@ -30,15 +30,17 @@ def test_outputs_and_backward_runs_are_those_of_small_steps() -> None:
     for end in (2.0, -2.0):
         t = np.linspace(0.0, end, 23)
         chosen, small = top().run(t=t), top().run(t=t, method="kahan_li8", dt=1 / 128)
-        assert np.abs(chosen.orientation - small.orientation).max() < 1e-11
-        assert np.abs(chosen.velocity - small.velocity).max() < 1e-10
+        # Either is exact to rounding; measured 3e-15.
+        assert np.abs(chosen.orientation - small.orientation).max() < 2e-14
+        assert np.abs(chosen.velocity - small.velocity).max() < 2e-14
 
 
 def test_what_looks_at_velocities() -> None:
     body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
     scene = vv.Scene(body, vv.RotationalDrag(0.1), vv.AppliedTorque([1.0, 0.0, 0.0]))
     chosen, small = scene.run(t=5.0), scene.run(t=5.0, method="rk4", dt=5e-4)
-    assert np.abs(chosen.orientation[-1] - small.orientation[-1]).max() < 1e-8
+    # Of the tolerance of 1e-9; measured 5.4e-10.
+    assert np.abs(chosen.orientation[-1] - small.orientation[-1]).max() < 3e-9
 
 
 def test_a_passage_late_in_the_run_is_seen() -> None:
@@ -58,6 +60,7 @@ def test_a_pendulum_at_rest_and_one_that_swings_long() -> None:
         body = vv.RigidBody(1.0, [1.0, 1.0, 0.1], orientation=turn, pivot=[0.0, 0.0, -1.0])
         out = vv.Scene(body, DOWN).run(t=[0.0, 1.0, 300.0])
         assert out.status == vv.Status.OK
+        # At rest nothing changes; falling from the side, of an energy of 9.8, measured 8e-11 at a tolerance of 1e-9.
         assert np.abs(out.energy - out.energy[0]).max() < 1e-10
 
 

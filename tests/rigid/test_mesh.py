@@ -78,7 +78,7 @@ def test_places_with_few_digits():
                 faces.append(sides + len(corners) * 8)
                 corners.append(box + np.array([x, y, z]))
     corners, faces = np.vstack(corners), np.vstack(faces)
-    # Neighbours share corners that have several numbers; faces between them cancel.
+    # Neighbors share corners that have several numbers; faces between them cancel.
     body = vv.rigid.mesh(corners, faces)
     assert body.mass == pytest.approx(216.0, rel=1e-13)
     assert body.tensor == pytest.approx(vv.rigid.box(216.0, 6.0, 6.0, 6.0).tensor, rel=1e-12, abs=1e-9)

@@ -149,7 +149,8 @@ def test_orders_on_attitude(name: str, method: str, order: int, steps: int) -> N
         errors(scene.run(t=times, method=method, dt=times[0] / n), states(name))["orientation"]
         for n in (steps, 2 * steps)
     ]
-    assert found[0] < 0.1
+    # Small enough for the next order not to show: the worst is 1.1e-3, and the order then off by 0.13.
+    assert found[0] < 4e-3
     assert np.log2(found[0] / found[1]) == pytest.approx(order, abs=0.15), found
 
 

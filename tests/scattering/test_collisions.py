@@ -1,4 +1,4 @@
-"""Collisions in space: conservation, frames, the line of centres, and soft spheres that do the same."""
+"""Collisions in space: conservation, frames, the line of centers, and soft spheres that do the same."""
 
 from typing import Any
 
@@ -52,7 +52,7 @@ def test_smooth_spheres(m1: float, m2: float, seed: int, coefficient: float) -> 
     check(m1, m2, v1, v2, after, 0.5 * c.reduced_mass(m1, m2) * (1.0 - coefficient**2) * met**2)
     size = 1e-14 * (1.0 + np.abs(v1).max() + np.abs(v2).max())
     assert parted == pytest.approx(-coefficient * met, abs=size)
-    # Across the line of centres nothing happens to either.
+    # Across the line of centers nothing happens to either.
     for before, now in ((v1, after.velocity1), (v2, after.velocity2)):
         across = (now - before) - along(now - before, n)[:, None] * n
         assert np.abs(across).max() < size
@@ -107,7 +107,7 @@ def test_elastic_collisions_agree_with_the_angles_of_scattering(m1: float, m2: f
     if 1e-3 < m1 / m2 < 1e3 and abs(m1 / m2 - 1.0) > 1e-3:
         lab = np.arctan2(after.velocity1[1], after.velocity1[0])
         assert lab == pytest.approx(vv.scattering.lab_angle(psi, mass_ratio=m1 / m2), abs=1e-11)
-    # The line of centres halves the angle between before and after.
+    # The line of centers halves the angle between before and after.
     normal = [-np.sin(psi / 2.0), np.cos(psi / 2.0), 0.0]
     again = c.elastic(m1, m2, [2.0, 0.0, 0.0], [0.0, 0.0, 0.0], normal=normal)
     assert again.velocity2 == pytest.approx(after.velocity2, abs=1e-14)
@@ -134,7 +134,7 @@ def test_head_on_and_its_limits() -> None:
 
 @given(masses, masses, seeds, st.floats(0.0, 0.999), st.floats(1e-3, 1e3))
 def test_spheres_that_fly_to_their_contact(m1: float, m2: float, seed: int, miss: float, distance: float) -> None:
-    """The time of contact, the place there, the line of centres from the impact vector: one and the same."""
+    """The time of contact, the place there, the line of centers from the impact vector: one and the same."""
     v1, v2, b = draw(seed)
     relative = v1 - v2
     across = np.cross(relative, b)
@@ -159,7 +159,7 @@ def test_spheres_that_fly_to_their_contact(m1: float, m2: float, seed: int, miss
 
 
 def test_a_soft_sphere_gives_the_same_impulse() -> None:
-    """A stiff spring between the surfaces, along the line of centres that hardly turns while they touch: the integral
+    """A stiff spring between the surfaces, along the line of centers that hardly turns while they touch: the integral
     of the force is the impulse, and the Q-value is nothing. The duration of the contact is the error."""
     v1, v2, r1 = np.array([1.0, 0.3, -0.2]), np.array([-0.5, 0.0, 0.1]), np.array([-1.3, 0.2, 0.1])
     m1, m2, distance = 1.0, 2.5, 1.0

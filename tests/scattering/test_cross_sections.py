@@ -14,7 +14,7 @@ from coulomb_beam import BEAM, TALLIES, half_distance, law, run
 
 @pytest.mark.parametrize("masses", [(1.0, 4.0), (1.0, 1.0), (4.0, 1.0), (1.0, 1e12), (1e6, 1.0)])
 def test_counts_follow_rutherfords_law(masses: tuple[float, float]) -> None:
-    """P(|ψ| > ψ₀) = (b(ψ₀)/b_max)² in the centre-of-mass frame, in 60 bins of equal probability.
+    """P(|ψ| > ψ₀) = (b(ψ₀)/b_max)² in the center-of-mass frame, in 60 bins of equal probability.
 
     The seed is fixed; χ² of 59 degrees of freedom exceeds 116 once in 10⁵ seeds, and falls below 24 as rarely.
     """

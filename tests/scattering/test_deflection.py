@@ -191,7 +191,8 @@ def test_derivative_is_that_of_the_angle_and_delay_that_of_time(potential: V.Pot
     de, dl = 1e-5 * energy, 1e-5 * momentum
     left = (at(energy + de, momentum).angle - at(energy - de, momentum).angle) / (2.0 * de)
     right = (at(energy, momentum + dl).time_delay - at(energy, momentum - dl).time_delay) / (2.0 * dl)
-    np.testing.assert_allclose(left, right, rtol=2e-5, atol=1e-6)
+    # Differences with relative steps of 1e-5: rounding over the step, and its square; measured 9.5e-9.
+    np.testing.assert_allclose(left, right, rtol=5e-8, atol=1e-8)
 
 
 def test_a_trajectory_of_the_scene_turns_as_far() -> None:
@@ -208,7 +209,7 @@ def test_a_trajectory_of_the_scene_turns_as_far() -> None:
         assert turned == pytest.approx(float(expected), abs=3e-9)
 
 
-def test_no_bit_depends_on_neighbours_threads_or_units() -> None:
+def test_no_bit_depends_on_neighbors_threads_or_units() -> None:
     random = np.random.default_rng(3)
     energy, b = 10.0 ** random.uniform(-2.0, 2.0, 300), random.uniform(0.0, 3.0, 300)
     for potential in (LENNARD_JONES, V.ScreenedCoulomb(1.0, 1.0, "zbl"), V.Morse(1.0, 1.3, 1.5)):

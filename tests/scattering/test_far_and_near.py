@@ -141,7 +141,7 @@ def test_grazing_a_soft_sphere(n: float) -> None:
         assert off <= 1e-10 * abs(float(expected)) + rounded, b
 
 
-def test_turning_points_of_closed_forms_are_those_of_their_neighbours() -> None:
+def test_turning_points_of_closed_forms_are_those_of_their_neighbors() -> None:
     for n, counts in ((4.0, [2, 2]), (2.0, [1, 1])):
         energy = 0.37
         edge = np.sqrt(2.0) * energy**-0.25 if n == 4.0 else energy**-0.5

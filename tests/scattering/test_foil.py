@@ -77,7 +77,8 @@ def test_any_potential(potential):
     found = S.deflect(potential, energy=way["energy"][:, 0] * share, impact_parameter=way["impact_parameter"])
     folded = np.arccos(np.cos(found.angle))
     assert len(folded)
-    assert np.allclose(way["cm_angle"], folded, rtol=1e-4, atol=2e-8)
+    # Angles are read from tables that may be off by 4e-6 of sin²(ψ/2); measured 6.2e-6 of small angles.
+    assert np.allclose(way["cm_angle"], folded, rtol=2e-5, atol=2e-8)
 
 
 def test_without_collisions_the_range_is_the_integral():
@@ -95,14 +96,15 @@ def test_without_collisions_the_range_is_the_integral():
         logarithm = np.linspace(np.log(1e4), np.log(5.486e6), 20_001)
         losses = np.exp(logarithm) / foil.stopping_power("alpha", np.exp(logarithm))
         integral = np.sum(0.5 * (losses[1:] + losses[:-1]) * np.diff(logarithm))
-        assert foil.range("alpha", 5.486e6, lowest_energy=1e4) == pytest.approx(integral, rel=1e-6)
+        assert foil.range("alpha", 5.486e6, lowest_energy=1e4) == pytest.approx(integral, rel=1e-7)
 
 
 def test_energy_left_behind_a_foil_is_that_of_the_range():
     foil = S.Foil("gold", 2.0, potential=vv.potentials.HardSphere(1e-9))
     way = foil.history("alpha", beam_energy=7.687e6, seed=1, incidence=0.5)
     whole, rest = foil.range("alpha", [7.687e6, way["final_energy"]], lowest_energy=1e4)
-    assert whole - rest == pytest.approx(2.0 / np.cos(0.5), rel=1e-5)
+    # Midpoint steps of 1/256 of the energy, as above; measured 7e-7.
+    assert whole - rest == pytest.approx(2.0 / np.cos(0.5), rel=3e-6)
 
 
 def test_every_ion_ends_somewhere():

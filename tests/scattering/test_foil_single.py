@@ -75,6 +75,7 @@ def test_elements_take_their_parts():
     for number, mass, part in ((79, 196.96657, 0.75), (47, 107.8682, 0.25)):
         kappa = 2 * number * 14.399645478 / (2 * 5e6 / (1 + 4.001506179127 / mass))
         expected += np.pi * kappa**2 * part * alloy.number_density * 3000.0
+    # Four standard errors, of 0.25 % each with so many ions; of the elements of 74 000 collisions 0.16 %.
     assert abs(value[1] - expected) < 4.0 * error[1] < 0.02 * expected
     metals = np.concatenate(
         [foil.history("alpha", beam_energy=5e4, seed=1, event=event)["element"] for event in range(30)]

@@ -170,7 +170,7 @@ def test_a_run_draws_all_its_tallies() -> None:
     )  # fmt: skip
     figure = run.plot()
     one, left, joint, bar = figure.axes
-    assert left.get_xlabel() == "angle in the centre-of-mass frame [degrees]"
+    assert left.get_xlabel() == "angle in the center-of-mass frame [degrees]"
     assert one.get_shared_x_axes().joined(one, left)
     assert (joint.get_xlabel(), joint.get_ylabel()) == ("laboratory angle [degrees]", "energy afterwards")
     assert bar.get_ylabel() == "events per bin"

@@ -54,11 +54,11 @@ def test_in_axes_of_ones_own() -> None:
     upper, lower = Figure().subplots(2)
     assert TALLY.plot(ax=upper) is upper
     assert not lower.has_data()
-    assert upper.get_xlabel() == "angle in the centre-of-mass frame [degrees]"
+    assert upper.get_xlabel() == "angle in the center-of-mass frame [degrees]"
     upper, lower = Figure().subplots(2)
     assert TALLY.plot(ax=upper, residuals=lower) is upper
     assert len(marked(lower)[0]) == (TALLY.expected() >= 1.0).sum()
-    assert lower.get_xlabel() == "angle in the centre-of-mass frame [degrees]"
+    assert lower.get_xlabel() == "angle in the center-of-mass frame [degrees]"
 
 
 def test_of_weighted_events() -> None:

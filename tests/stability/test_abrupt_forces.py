@@ -71,4 +71,5 @@ def test_copies_meet_the_sphere_as_each_alone(threads: int) -> None:
     for place, velocity in zip(places, out.velocity[:, -1], strict=True):
         alone = scene.with_state(place, body.velocity, 0.0).run(60.0, method="verner98").velocity[-1]
         assert np.array_equal(alone, velocity)
-        assert velocity[0, 0] == pytest.approx(-1.0, abs=1e-6)
+        # Some tolerances of 1e-9, as a derivative leaps at the surface; measured 4.1e-8.
+        assert velocity[0, 0] == pytest.approx(-1.0, abs=2e-7)

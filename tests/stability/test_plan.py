@@ -40,7 +40,7 @@ CLOSED = {
     "one massive body": vv.Scene(
         join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)
     ),
-    "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
+    "fixed center": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
     "linear drag": vv.Scene(some(4, masses=1.0), vv.LinearDrag(2.0)),
     "linear drag and a uniform field": vv.Scene(some(4), vv.LinearDrag(2.0), vv.UniformField([0.0, 0.0, -9.81])),
     "magnetic field": vv.Scene(some(4, masses=1.0), vv.UniformMagneticField([0.0, 1.0, 2.0])),
@@ -253,7 +253,7 @@ def test_ten_million_steps_do_not_grow_in_memory() -> None:
 
 @pytest.mark.parametrize("count", [2, 3])
 def test_of_few_bodies_a_multistep_method_skips_the_first(count: int) -> None:
-    """Relative to it, the centre of mass moving uniformly: the same motion as with all steps, to round-off; the same
+    """Relative to it, the center of mass moving uniformly: the same motion as with all steps, to round-off; the same
     bits whatever the massless bodies beside it."""
     gravity = vv.Gravity(1.0, softening=0.1)
     stars = vv.Particles(STARS.mass[:count], STARS.position[:count], STARS.velocity[:count])

@@ -1,6 +1,6 @@
 """Collisions of two bodies in space: what becomes of their velocities, and the impulse between them.
 
-The one idea: only the relative velocity changes, by what the line of centres or the direction of parting says; each
+The one idea: only the relative velocity changes, by what the line of centers or the direction of parting says; each
 body takes the other's share of the mass of the change, so that momentum is conserved by construction. Vectors have
 their three components along the last axis; all arguments broadcast against each other over the axes before it.
 

@@ -73,10 +73,10 @@ def elastic(
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
     normal : array_like, shape (..., 3), optional
-        Line of centres at contact, such as position1 − position2, along which smooth bodies push each other; of any
+        Line of centers at contact, such as position1 − position2, along which smooth bodies push each other; of any
         length and either sense. See `line_of_centers`.
     direction : array_like, shape (..., 3), optional
-        In its place: where the first goes as seen from the second, or from the centre of mass, afterwards; of any
+        In its place: where the first goes as seen from the second, or from the center of mass, afterwards; of any
         length.
 
     Returns
@@ -129,7 +129,7 @@ def inelastic(
         Energy that is released (Q > 0) or taken up (Q < 0); at least −½μu², the energy of relative motion, where they
         stick. With a normal at least −½μ(u·n)².
     normal : array_like, shape (..., 3), optional
-        Line of centres at contact, as of `elastic`: the velocity across it stays as it is.
+        Line of centers at contact, as of `elastic`: the velocity across it stays as it is.
     direction : array_like, shape (..., 3), optional
         In its place: where the first goes as seen from the second afterwards.
 
@@ -170,7 +170,7 @@ def restitution(
 ) -> CollisionOutcome:
     """Velocities after smooth bodies have collided with a coefficient of restitution.
 
-    Along the line of centres they part with ε times the speed with which they met, (v₂' − v₁')·n = ε (v₁ − v₂)·n;
+    Along the line of centers they part with ε times the speed with which they met, (v₂' − v₁')·n = ε (v₁ − v₂)·n;
     across it nothing changes.
 
     Units: those of the caller, one consistent system.
@@ -182,9 +182,9 @@ def restitution(
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
     coefficient : array_like, shape (...)
-        ε, from 0 (no speed along the line of centres is left) to 1 (elastic).
+        ε, from 0 (no speed along the line of centers is left) to 1 (elastic).
     normal : array_like, shape (..., 3)
-        Line of centres at contact, such as position1 − position2; of any length and either sense. See
+        Line of centers at contact, such as position1 − position2; of any length and either sense. See
         `line_of_centers`.
 
     Returns
@@ -234,7 +234,7 @@ def impulse(
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
     normal : array_like, shape (..., 3)
-        Line of centres at contact, of any length and either sense.
+        Line of centers at contact, of any length and either sense.
     coefficient : array_like, shape (...), optional
         Of restitution, from 0 to 1, elastic by default.
 
@@ -265,7 +265,7 @@ def impulse(
 def line_of_centers(
     velocity1: ArrayLike, velocity2: ArrayLike, *, impact: ArrayLike, distance: ArrayLike
 ) -> NDArray[np.float64]:
-    """Line of centres of two spheres at the moment at which they touch.
+    """Line of centers of two spheres at the moment at which they touch.
 
     Units: those of the caller, one consistent system.
 
@@ -277,7 +277,7 @@ def line_of_centers(
         Position of the first as seen from the second, at any time before, of which only what is across the relative
         velocity counts: the impact parameter with its direction.
     distance : array_like, shape (...)
-        Of the centres at contact: both radii together.
+        Of the centers at contact: both radii together.
 
     Returns
     -------
@@ -321,9 +321,9 @@ def contact_time(
     Parameters
     ----------
     position1, position2, velocity1, velocity2 : array_like, shape (..., 3)
-        Of the centres, now.
+        Of the centers, now.
     distance : array_like, shape (...)
-        Of the centres at contact: both radii together.
+        Of the centers at contact: both radii together.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Two bodies as a centre of mass and a relative motion."""
+"""Two bodies as a center of mass and a relative motion."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def reduced_mass(mass1: ArrayLike, mass2: ArrayLike) -> NDArray[np.float64]:
 def to_relative(
     mass1: ArrayLike, mass2: ArrayLike, vector1: ArrayLike, vector2: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Centre of mass, and the first body as seen from the second, of two positions or of two velocities.
+    """Center of mass, and the first body as seen from the second, of two positions or of two velocities.
 
     Units: those of the caller, one consistent system.
 
@@ -96,7 +96,7 @@ def to_relative(
 def from_relative(
     mass1: ArrayLike, mass2: ArrayLike, center: ArrayLike, relative: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Positions or velocities of two bodies from their centre of mass and the first as seen from the second.
+    """Positions or velocities of two bodies from their center of mass and the first as seen from the second.
 
     Units: those of the caller, one consistent system.
 

@@ -104,7 +104,7 @@ def outer_solar_system(
     ----------
     variant : {"hairer_lubich_wanner", "applegate"}, optional
         Whose numbers. The Sun of Hairer, Lubich and Wanner starts at rest at the origin, so the
-        system drifts; Applegate's is near its centre-of-mass frame, with a massive Pluto here.
+        system drifts; Applegate's is near its center-of-mass frame, with a massive Pluto here.
 
     Returns
     -------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["SolarSystem", "solar_system"]
 
 # Sun over planet, and the heliocentric state in the equator of J2000, in au and au/day. DE405 gives no planet's moons a
-# place of their own: the mass is that of the planet with them, and the place that of their centre of mass.
+# place of their own: the mass is that of the planet with them, and the place that of their center of mass.
 _PLANETS = {
     "Mercury": (
         6023600.0,
@@ -124,7 +124,7 @@ def solar_system(frame: Literal["ecliptic", "equatorial"] = "ecliptic") -> Solar
     Returns
     -------
     SolarSystem
-        A planet stands for itself with its moons: their mass, at their centre of mass; "Earth" is the Earth and the
+        A planet stands for itself with its moons: their mass, at their center of mass; "Earth" is the Earth and the
         Moon.
 
     Raises

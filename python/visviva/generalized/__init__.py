@@ -17,6 +17,7 @@ from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._discrete import DiscreteAction
 from visviva.generalized._ensemble import GeneralizedEnsemble
 from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
+from visviva.generalized._equations import EquationsOfMotion, HamiltonsEquations
 from visviva.generalized._equilibria import Equilibrium
 from visviva.generalized._events import GeneralizedEventTable
 from visviva.generalized._hamiltonian import Hamiltonian
@@ -33,6 +34,7 @@ __all__ = [
     "AccessoryProblem",
     "CanonicalTest",
     "DiscreteAction",
+    "EquationsOfMotion",
     "Equilibrium",
     "Expression",
     "GeneralizedEnsemble",
@@ -42,6 +44,7 @@ __all__ = [
     "GeneralizedSystem",
     "GeneralizedTrajectory",
     "Hamiltonian",
+    "HamiltonsEquations",
     "Lagrangian",
     "LegendreTransform",
     "Linearization",

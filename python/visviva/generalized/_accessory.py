@@ -1,6 +1,6 @@
 """Jacobi's accessory problem: whether the action is least along a path, and where it ceases to be.
 
-The one idea: neighbours of a motion that leave its first point obey a linear equation, and come back to it at conjugate
+The one idea: neighbors of a motion that leave its first point obey a linear equation, and come back to it at conjugate
 points. Their places A and momenta B make a unitary matrix W = (B + iA)(B − iA)⁻¹, whose eigenvalues pass 1 there, and
 only forwards: counting turns of W counts conjugate points, and so the directions in which the action is largest
 (M. Morse). With ∂²L/∂q∂q − λ ∂²L/∂q̇∂q̇ in the place of ∂²L/∂q∂q it counts the eigenvalues below λ.
@@ -161,7 +161,7 @@ class _Linear:
         frames = np.empty((len(flows), 2 * self.n, self.n))
         frame = np.concatenate([np.zeros((self.n, self.n)), np.eye(self.n)])
         for step in range(len(flows)):
-            # Other columns that span the same neighbours: W is that of the span.
+            # Other columns that span the same neighbors: W is that of the span.
             frames[step] = frame
             frame = np.linalg.qr(flows[step, -1] @ frame)[0]
         angles = self._angles(flows @ frames[:, None]).reshape(-1, self.n)

@@ -17,7 +17,7 @@ from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._quadrature import _DERIVATIVE, _NODES, _WEIGHTS
 from visviva.errors import ConvergenceError, InvalidInput
-from visviva.generalized._path import Path, as_path, through
+from visviva.generalized._path import Path, as_path, interpolated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -92,7 +92,7 @@ def derivatives(system: Lagrangian, order: int) -> tuple[list[Node], list[int]]:
     return [*nodes, *moved], [*roots, *(first + root for root in others)]
 
 
-def along(system: Lagrangian, order: int) -> Callable[..., NDArray[np.float64]]:
+def derivatives_along(system: Lagrangian, order: int) -> Callable[..., NDArray[np.float64]]:
     """Give the function that has these derivatives at times (…) and places and velocities (…, n)."""
     nodes, roots = derivatives(system, order)
 
@@ -109,19 +109,19 @@ def along(system: Lagrangian, order: int) -> Callable[..., NDArray[np.float64]]:
 
 def hessian(system: Lagrangian) -> Callable[..., NDArray[np.float64]]:
     """Give the function of (t, q, q̇) that has the second derivatives of L by (q, q̇), shape (…, 2n, 2n)."""
-    values, n = along(system, 2), len(system.coordinates)
+    values, n = derivatives_along(system, 2), len(system.coordinates)
     return lambda t, q, v: values(t, q, v).reshape(*t.shape, 2 * n, 2 * n)
 
 
 def action(system: Lagrangian, path: Any, degree: int) -> PathIntegral:
     """Give ∫ L dt."""
-    values = along(system, 0)
+    values = derivatives_along(system, 0)
     return _integral(as_path(system, path, degree), lambda t, q, v, *_: values(t, q, v)[..., 0], None)
 
 
 def first_variation(system: Lagrangian, path: Any, variation: Any, degree: int) -> PathIntegral:
     """Give ∫ (∂L/∂q η + ∂L/∂q̇ η̇) dt."""
-    values = along(system, 1)
+    values = derivatives_along(system, 1)
 
     def integrand(t: Any, q: Any, v: Any, eta: Any, rate: Any) -> Any:
         return (values(t, q, v) * np.concatenate([eta, rate], axis=-1)).sum(axis=-1)
@@ -157,7 +157,7 @@ def _varied(
     given = np.asarray(variation)
     shape = (count,) if n == 1 and given.ndim == 1 else (count, n)
     known = float_array("variation", variation, shape).reshape(count, n)
-    return along_path, integrand, through(along_path.t, known, along_path.coefficients.shape[1] - 1)
+    return along_path, integrand, interpolated(along_path.t, known, along_path.coefficients.shape[1] - 1)
 
 
 def _integral(path: Path, integrand: Integrand, variation: Any) -> PathIntegral:

@@ -90,9 +90,9 @@ class Linearization(Shown):
         return as_text(self._sheet())
 
     def _sheet(self) -> Sheet:
-        from visviva.generalized._told_modes import told
+        from visviva.generalized._modes_table import modes_table
 
-        return told(self, _ON_THE_AXIS)
+        return modes_table(self, _ON_THE_AXIS)
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
@@ -320,7 +320,7 @@ def _rounding(system: Lagrangian, place: NDArray[np.float64], stiffness: NDArray
 def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
     """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is but itself."""
     c, n = Calculus(system), len(place)
-    further = c.taken(system._source.description["nodes"], system._source.description["forces"])
+    further = c.adopted(system._source.description["nodes"], system._source.description["forces"])
     forces = [[slope] for slope in c.of_system("slopes")]
     for force, other in zip(forces, further, strict=False):
         force.append(other)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from visviva.generalized._nodes import Node
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["Calculus", "listed"]
+__all__ = ["Calculus", "expression_list"]
 
 
 class Calculus:
@@ -32,7 +32,7 @@ class Calculus:
         self._system = system
         self._nodes = Nodes()
 
-    def taken(self, nodes: Sequence[Node], roots: Iterable[int]) -> list[Expression]:
+    def adopted(self, nodes: Sequence[Node], roots: Iterable[int]) -> list[Expression]:
         """Give nodes of another list as expressions of this one."""
         places: list[int] = []
         for operation, arguments, value in nodes:
@@ -41,11 +41,11 @@ class Calculus:
 
     def of_system(self, name: str) -> list[Expression]:
         """Give expressions that the core knows by name."""
-        return self.taken(*self._system._model.expressions(name))
+        return self.adopted(*self._system._model.expressions(name))
 
     def of_user(self, argument: str, expressions: Iterable[Any]) -> list[Expression]:
         """Give what a user has written: expressions of SymPy, functions, or numbers."""
-        return self.taken(*self._system._source.nodes(argument, expressions))
+        return self.adopted(*self._system._source.nodes(argument, expressions))
 
     def constant(self, value: float) -> Expression:
         """Give a number."""
@@ -56,10 +56,10 @@ class Calculus:
         n = len(self._system.coordinates)
         return [Expression(self._nodes, self._nodes.add("variable", (), float(n + i))) for i in range(n)]
 
-    def derived(self, expressions: Sequence[Expression]) -> list[list[Expression]]:
+    def with_derivatives(self, expressions: Sequence[Expression]) -> list[list[Expression]]:
         """Give each expression as the core simplifies it, then its derivatives by the state's numbers and the time."""
         roots = [each._place for each in expressions]
-        found = self.taken(*self._system._model.derivatives(self._nodes.all, roots))
+        found = self.adopted(*self._system._model.derivatives(self._nodes.all, roots))
         width = 2 * len(self._system.coordinates) + 2
         return [found[first : first + width] for first in range(0, len(found), width)]
 
@@ -76,12 +76,12 @@ class Calculus:
         states = np.ascontiguousarray(states)
         return self._system._model.evaluate(self._nodes.all, roots, t, states, parameters[None, :])
 
-    def shown(self, expressions: Sequence[Expression]) -> list[Any]:
+    def to_sympy(self, expressions: Sequence[Expression]) -> list[Any]:
         """Give expressions as trees of SymPy."""
         return self._system._trees(self._nodes.all, [each._place for each in expressions])
 
 
-def listed(argument: str, given: Any, count: int, what: str) -> list[Any]:
+def expression_list(argument: str, given: Any, count: int, what: str) -> list[Any]:
     """Give so many expressions: of a sequence, or of one function that gives all of them."""
     if callable(given) and not hasattr(given, "free_symbols"):
 

@@ -10,7 +10,7 @@ import numpy as np
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._calculus import Calculus, listed
+from visviva.generalized._calculus import Calculus, expression_list
 from visviva.generalized._probe import VANISHES, Probe
 
 if TYPE_CHECKING:
@@ -65,7 +65,9 @@ def canonical_test(system: Hamiltonian, transformation: Any) -> CanonicalTest:
     """Test a transformation."""
     c, n = Calculus(system), len(system.coordinates)
     what = f"Q and P of {list(system.coordinates)}: {2 * n} expressions"
-    rows = c.derived(c.of_user("transformation", listed("transformation", transformation, 2 * n, what)))
+    rows = c.with_derivatives(
+        c.of_user("transformation", expression_list("transformation", transformation, 2 * n, what))
+    )
     probe, undecided = Probe(c), False
     pairs = [(a, b) for a in range(2 * n) for b in range(a + 1, 2 * n)]
     matrix, proved, worst = np.zeros((2 * n, 2 * n)), True, 0.0
@@ -73,10 +75,10 @@ def canonical_test(system: Hamiltonian, transformation: Any) -> CanonicalTest:
         parts = [rows[k][1 + a] * rows[n + k][1 + b] for k in range(n)]
         parts += [-(rows[n + k][1 + a] * rows[k][1 + b]) for k in range(n)]
         parts.append(c.constant(-1.0 if b == a + n else 0.0))
-        if c.is_zero(c.derived([sum(parts, c.constant(0.0))])[0][0]):
+        if c.is_zero(c.with_derivatives([sum(parts, c.constant(0.0))])[0][0]):
             continue
         proved = False
-        found = probe.look(parts)
+        found = probe.check_sum(parts)
         if not found.known:
             raise InvalidInput("transformation", "it has values at too few states near the start to test it there")
         worst, undecided = max(worst, found.residual), undecided or not found.seen

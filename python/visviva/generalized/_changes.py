@@ -13,17 +13,16 @@ from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, time
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from visviva.generalized._system import GeneralizedSystem
     from visviva.integrators import Method
     from visviva.typing import GeneralizedMethodName
 
-__all__ = ["boundary_value", "flow_jacobian", "legendre", "lyapunov_exponents", "routhian"]
+__all__ = ["flow_jacobian", "legendre", "lyapunov_exponents", "refuse_kinks", "routhian"]
 
-#: The most steps of a run, and of one that tries a velocity.
+#: The most steps of a run.
 MOST_STEPS = 100_000_000
-_MOST_STEPS_OF_A_TRIAL = 20_000
 #: Where the least growth of neighbors is below this part of the most, it has lost half of its digits.
 _DROWNED = 1e-7
 
@@ -131,7 +130,7 @@ def flow_jacobian(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the state at ``t``, and its derivatives with respect to the state at the start."""
     n = 2 * len(system.coordinates)
-    _refuse_kinks(system)
+    refuse_kinks(system)
     asked, _ = system._asked(t, method, rtol, None, None)
     asked["max_steps"] = most_steps
     start = np.concatenate([system._start(), np.eye(n).ravel()])
@@ -143,7 +142,7 @@ def flow_jacobian(
     return last[:n], last[n:].reshape(n, n)
 
 
-def _refuse_kinks(system: GeneralizedSystem) -> None:
+def refuse_kinks(system: GeneralizedSystem) -> None:
     if system._structure["kinks"]:
         raise InvalidInput(
             "system",
@@ -155,7 +154,7 @@ def _refuse_kinks(system: GeneralizedSystem) -> None:
 def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
     """Give all exponents, by the variational equations and orthonormal frames."""
     n = 2 * len(system.coordinates)
-    _refuse_kinks(system)
+    refuse_kinks(system)
     model = system._model.variational()
     parts = max(1, round(abs(t - system.t0) / interval))
     times = np.linspace(system.t0, t, parts + 1)
@@ -196,58 +195,3 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         state, frame = last[:n], turned
         sums += np.log(stretch)
     return np.sort(sums / (t - system.t0))[::-1]
-
-
-def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, rtol: float) -> GeneralizedSystem:
-    """Give the system with the velocities (or momenta) that lead to a place at a time, by Newton's method."""
-    _refuse_kinks(system)
-    from visviva._arrays import float_array
-
-    n = len(system.coordinates)
-    goal = float_array("position", position, (n,))
-
-    # Relative to the places themselves: systems may be of any size.
-    scale = np.maximum(np.abs(goal), np.abs(system._start()[:n]))
-
-    def missed(
-        other: GeneralizedSystem, may_fail: tuple[type[Exception], ...] = (ConvergenceError,)
-    ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-        try:
-            reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
-        except may_fail:
-            return np.inf, np.full(n, np.nan), np.eye(2 * n)
-        miss = reached[:n] - goal
-        return relative(miss), miss, jacobian
-
-    def relative(miss: NDArray[np.float64]) -> float:
-        sizes = np.where(scale > 0.0, scale, scale.max(initial=0.0))
-        return float((np.abs(miss) / np.where(sizes > 0.0, sizes, 1.0)).max())
-
-    # What cannot be run from the start is refused by its name; a velocity that is tried may be none of the system's.
-    other, (size, miss, jacobian) = system, missed(system)
-    if np.isfinite(size):
-        scale = np.maximum(scale, np.abs(miss + goal))
-        size = relative(miss)
-    for _ in range(50):
-        if size <= 1e-13:
-            return other
-        try:
-            change = np.linalg.solve(jacobian[:n, n:], miss)
-        except np.linalg.LinAlgError:
-            break
-        # Newton's step, halved until it leads nearer.
-        for _ in range(12):
-            trial = other._at(None, other._second - change)
-            new_size, new_miss, new_jacobian = missed(trial, (ConvergenceError, InvalidInput))
-            if new_size < size:
-                break
-            change = 0.5 * change
-        else:
-            # Nearer is what round-off does not allow.
-            if size <= 1e-10:
-                return other
-            break
-        other, size, miss, jacobian = trial, new_size, new_miss, new_jacobian
-    raise ConvergenceError(
-        "no motion through both places was found from this velocity; start with another one, away from conjugate points"
-    )

@@ -52,16 +52,16 @@ def _sizes(system: Lagrangian, state: NDArray[np.float64]) -> tuple[list[float],
     """Give sizes of all holonomic constraints, and of the rates of all."""
     c, n = Calculus(system), len(system.coordinates)
     description = system._source.description
-    holonomic = c.taken(description["nodes"], description["holonomic"])
-    others = c.taken(description["nodes"], description["nonholonomic"])
+    holonomic = c.adopted(description["nodes"], description["holonomic"])
+    others = c.adopted(description["nodes"], description["nonholonomic"])
     v = c.velocities()
-    rates = [sum((v[i] * row[1 + i] for i in range(n)), row[2 * n + 1]) for row in c.derived(holonomic)]
+    rates = [sum((v[i] * row[1 + i] for i in range(n)), row[2 * n + 1]) for row in c.with_derivatives(holonomic)]
     halves = np.abs(state.reshape(2, n))
     scales = np.maximum(halves, _ROUNDED * halves.max(axis=1, keepdims=True)).ravel()
 
     def sizes(expressions: list[Expression], to: int) -> list[float]:
         found = []
-        for expression, row in zip(expressions, c.derived(expressions), strict=True):
+        for expression, row in zip(expressions, c.with_derivatives(expressions), strict=True):
             terms = terms_of(c, [expression])
             both = [*terms, *row[1 : to + 1]]
             values = np.abs(c.values(both, np.array([system.t0]), state[None], system._values)[0])

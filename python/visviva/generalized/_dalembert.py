@@ -33,16 +33,16 @@ def dalembert(system: Lagrangian, trajectory: GeneralizedTrajectory) -> NDArray[
         )
     description, t, states, values = system._source.description, trajectory.t, trajectory._states, run._values
     # d/dt ∂L/∂q̇ − ∂L/∂q − Q + ∂R/∂q̇, in parts: what it is made of tells its size.
-    momenta, v = c.derived(c.of_system("conjugates")), c.velocities()
+    momenta, v = c.with_derivatives(c.of_system("conjugates")), c.velocities()
     parts = [
         [*(row[1 + j] * v[j] for j in range(n)), row[2 * n + 1], -slope]
         for row, slope in zip(momenta, c.of_system("slopes"), strict=True)
     ]
     if description["forces"]:
-        for part, force in zip(parts, c.taken(description["nodes"], description["forces"]), strict=True):
+        for part, force in zip(parts, c.adopted(description["nodes"], description["forces"]), strict=True):
             part.append(-force)
     if description["dissipation"] is not None:
-        row = c.derived(c.taken(description["nodes"], [description["dissipation"]]))[0]
+        row = c.with_derivatives(c.adopted(description["nodes"], [description["dissipation"]]))[0]
         for index, part in enumerate(parts):
             part.append(row[n + 1 + index])
     width = len(parts[0])
@@ -51,8 +51,11 @@ def dalembert(system: Lagrangian, trajectory: GeneralizedTrajectory) -> NDArray[
     accelerations = run._model.rates(np.ascontiguousarray(t), np.ascontiguousarray(states), values[None, :])
     terms = np.concatenate([known, mass * accelerations[:, None, :]], axis=2)
     reactions, sizes = terms.sum(axis=2), np.abs(terms).sum(axis=(1, 2))
-    rows = [row[1 : n + 1] for row in c.derived(c.taken(description["nodes"], description["holonomic"]))]
-    rows += [row[n + 1 : 2 * n + 1] for row in c.derived(c.taken(description["nodes"], description["nonholonomic"]))]
+    rows = [row[1 : n + 1] for row in c.with_derivatives(c.adopted(description["nodes"], description["holonomic"]))]
+    rows += [
+        row[n + 1 : 2 * n + 1]
+        for row in c.with_derivatives(c.adopted(description["nodes"], description["nonholonomic"]))
+    ]
     gradients = c.values([each for row in rows for each in row], t, states, values).reshape(len(t), len(rows), n)
     residual = np.empty(len(t))
     for index in range(len(t)):

@@ -13,8 +13,8 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
-from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, which
-from visviva.generalized._resolved import judge
+from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, member_index
+from visviva.generalized._resolved import warn_if_unresolved
 from visviva.generalized._runs import RTOL
 from visviva.generalized._source import _label
 
@@ -113,7 +113,7 @@ class GeneralizedEnsemble(Shown):
         return GeneralizedEnsemble(self.system, states[:, :n], states[:, n:], own)
 
     def __getitem__(self, member: int) -> GeneralizedSystem:
-        n, member = len(self.system.coordinates), which(member, len(self))
+        n, member = len(self.system.coordinates), member_index(member, len(self))
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
@@ -184,5 +184,5 @@ class GeneralizedEnsemble(Shown):
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
-        judge(self.system, asked, self._states, (out._states[:, -1], float(out.t[-1])), self._parameters)
+        warn_if_unresolved(self.system, asked, self._states, (out._states[:, -1], float(out.t[-1])), self._parameters)
         return out

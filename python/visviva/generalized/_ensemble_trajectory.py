@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["GeneralizedEnsembleTrajectory", "which"]
+__all__ = ["GeneralizedEnsembleTrajectory", "member_index"]
 
 
-def which(member: object, count: int) -> int:
+def member_index(member: object, count: int) -> int:
     """Give the place of one copy, from 0."""
     chosen = one_or_some(member, count)
     if isinstance(chosen, slice):
@@ -122,7 +122,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         return len(self.status)
 
     def __getitem__(self, member: int) -> GeneralizedTrajectory:
-        member = which(member, len(self))
+        member = member_index(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
     @property

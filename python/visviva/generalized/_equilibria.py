@@ -98,11 +98,11 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
     found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
     reached = np.array([place for place in found if place is not None]).reshape(-1, n)
-    told = np.ones(n, dtype=bool)
-    told[system._structure["cyclic"]] = False
+    distinguishing = np.ones(n, dtype=bool)
+    distinguishing[system._structure["cyclic"]] = False
     if near is None:
         # All places along a cyclic coordinate are alike.
-        reached[:, ~told] = 0.0
+        reached[:, ~distinguishing] = 0.0
         reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
     # Sizes of coordinates: those of the places that are looked at and found.
     size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
@@ -112,7 +112,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     places: list[NDArray[np.float64]] = []
     while len(reached):
         places.append(reached[0])
-        reached = reached[((np.abs(reached - reached[0]) > SAME * size) & told).any(axis=1)]
+        reached = reached[((np.abs(reached - reached[0]) > SAME * size) & distinguishing).any(axis=1)]
     results, without_mass = [], []
     for place in sorted(places, key=tuple):
         if _mass_is_singular(system, place):
@@ -129,7 +129,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         raise InvalidInput(
             "L",
             f"the forces vanish at {without_mass[0].round(6).tolist()}, where the mass matrix is singular, as at the "
-            "pole of spherical coordinates: no small motions are told in these; take others there, as x and y",
+            "pole of spherical coordinates: these cannot describe small motions there; use others, such as x and y",
         )
     return results
 

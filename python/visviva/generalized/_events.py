@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import number
-from visviva._event import sign
+from visviva._event import direction_of
 from visviva._event_table import Lines
 from visviva._exported import Columns, chosen_columns
 from visviva._keywords import did_you_mean, known_keywords
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from visviva.generalized._states import States
     from visviva.typing import GeneralizedEventColumnName
 
-__all__ = ["GeneralizedEventTable", "described", "events_of", "found_events", "told"]
+__all__ = ["GeneralizedEventTable", "described", "events_of", "events_to_core", "found_events"]
 
 _OF_BODIES = ("apsis", "distance", "plane")
 
@@ -53,8 +53,8 @@ def _event(index: int, given: Any) -> Event:
     if isinstance(given, str):
         return coordinate(given)
     if callable(given) or hasattr(given, "free_symbols"):
-        way = sign(number("direction", getattr(given, "direction", 0)))
-        return expression(given, direction=way, terminal=getattr(given, "terminal", 0))
+        direction = direction_of(number("direction", getattr(given, "direction", 0)))
+        return expression(given, direction=direction, terminal=getattr(given, "terminal", 0))
     raise InvalidInput(
         "events",
         "expected one of visviva.events, the name of a coordinate, an expression of SymPy or a function f(q, v, t), "
@@ -62,9 +62,9 @@ def _event(index: int, given: Any) -> Event:
     )
 
 
-def told(system: States, events: Sequence[Event]) -> list[dict[str, Any]]:
+def events_to_core(system: States, events: Sequence[Event]) -> list[dict[str, Any]]:
     """What the core is told of events of a system."""
-    return [_told(system, index, event) for index, event in enumerate(events)]
+    return [_event_to_core(system, index, event) for index, event in enumerate(events)]
 
 
 def described(events: Sequence[Event]) -> tuple[Event, ...]:
@@ -80,15 +80,15 @@ def described(events: Sequence[Event]) -> tuple[Event, ...]:
     return tuple(map(kept, events))
 
 
-def _told(system: States, index: int, event: Event) -> dict[str, Any]:
+def _event_to_core(system: States, index: int, event: Event) -> dict[str, Any]:
     parameters: dict[str, Any] = dict(event.parameters)
     if "name" in parameters:
         raise InvalidInput(
             "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
         )
     nodes: list[Node] = []
-    made: dict[str, Any] = {"nodes": nodes, "root": None, "energy": None, "function": None}
-    made |= {"direction": float(event.direction), "last": event.terminal or None}
+    to_send: dict[str, Any] = {"nodes": nodes, "root": None, "energy": None, "function": None}
+    to_send |= {"direction": float(event.direction), "last": event.terminal or None}
     match event.kind:
         case "coordinate":
             name = parameters["coordinate"]
@@ -100,16 +100,16 @@ def _told(system: States, index: int, event: Event) -> dict[str, Any]:
                 )
             place = float(system.coordinates.index(name))
             nodes += [("variable", [], place), ("constant", [], -parameters["value"]), ("sum", [0, 1], 0.0)]
-            made["root"] = 2
+            to_send["root"] = 2
         case "expression":
-            made["nodes"], made["root"] = _nodes(system, index, parameters["expression"])
+            to_send["nodes"], to_send["root"] = _nodes(system, index, parameters["expression"])
         case "energy":
-            made["energy"] = parameters["value"]
+            to_send["energy"] = parameters["value"]
         case _ if "function" in parameters:
-            made["function"] = parameters["function"]
+            to_send["function"] = parameters["function"]
         case kind:
             raise InvalidInput("events", f"events[{index}]: expected an event of visviva.events, got the kind {kind!r}")
-    return made
+    return to_send
 
 
 def _nodes(system: States, index: int, given: Any) -> tuple[list[Node], int]:

@@ -54,11 +54,11 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
             )
     looked_at = np.abs(states).max(axis=0)
     states = _reached(system, states)
-    told = np.ones(2 * n, dtype=bool)
-    told[system._structure["cyclic"]] = False
+    distinguishing = np.ones(2 * n, dtype=bool)
+    distinguishing[system._structure["cyclic"]] = False
     if near is None:
         # All places along a cyclic coordinate are alike, and those beyond a turn are the same or far away.
-        states[:, ~told] = 0.0
+        states[:, ~distinguishing] = 0.0
         states = states[np.abs(states[:, :n]).max(axis=1, initial=0.0) <= np.pi + 1e-6]
     size = np.maximum(looked_at, np.abs(states).max(axis=0, initial=0.0))
     size[size == 0.0] = 1.0
@@ -66,7 +66,7 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     places: list[NDArray[np.float64]] = []
     while len(states):
         places.append(states[0])
-        states = states[((np.abs(states - states[0]) > SAME * size) & told).any(axis=1)]
+        states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
     return [_equilibrium(system, place) for place in sorted(places, key=tuple)]
 
 

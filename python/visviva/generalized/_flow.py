@@ -206,6 +206,15 @@ class Flow:
         InvalidInput
             As `flow_jacobian`.
 
+        Notes
+        -----
+        Lengths of small differences are √Σδ² of the numbers of the state as they are: places and velocities (momenta of
+        a Hamiltonian), in their units, whatever the mass matrix. Another norm, other units, or momenta for velocities
+        change an exponent over a time T by at most the logarithm of the ratios of the norms at both ends over T: not
+        what it tends to while the motion keeps to where those are bounded. Exponents of a Hamiltonian without further
+        forces add up to 0; those of a Lagrangian to ln(det M(start) / det M(end)) / T of the mass matrix M, which
+        tends to it.
+
         References
         ----------
         G. Benettin, L. Galgani, A. Giorgilli & J.-M. Strelcyn, Meccanica 15 (1980) 9.
@@ -229,6 +238,13 @@ class Flow:
     def boundary_value(self, t: float, position: ArrayLike, *, rtol: float = 1e-12) -> Self:
         """The system with the velocities (or momenta) at the start that lead to a place at a time.
 
+        There may be several: a pendulum may swing or turn over first, a planet go round once or often. What is given is
+        the motion that Newton's method, its steps halved until they lead nearer, comes to from the present velocity.
+        Where it comes to none, the place of arrival is moved from where the present motion goes, and the motion
+        followed to the first that arrives; and if that leads nowhere, a straight line in a short time is, as the time
+        grows. Start with another velocity for another motion. At a conjugate point, as of an oscillator after half a
+        period, all motions meet, and to other places there are none.
+
         Units: those of the system.
 
         Parameters
@@ -248,14 +264,16 @@ class Flow:
         Raises
         ------
         InvalidInput
-            For constraints, absolute values, or more than 16 coordinates.
+            For constraints, absolute values, more than 16 coordinates, or the time of the start.
         ConvergenceError
-            If Newton's method finds no such motion from the present velocity.
+            If no such motion is found; its message tells how near the nearest came, and whether the places are
+            conjugate to each other.
 
         References
         ----------
         Shooting: W. H. Press, S. A. Teukolsky, W. T. Vetterling & B. P. Flannery, *Numerical Recipes*, 3rd ed. (2007),
-        § 18.1.
+        § 18.1. Continuation by the length of arc: E. L. Allgower & K. Georg, *Numerical Continuation Methods* (1990),
+        chapter 6.
 
         Examples
         --------
@@ -264,7 +282,7 @@ class Flow:
         >>> thrown.run(0.5).position[-1].round(12)
         array([0.4])
         """
-        from visviva.generalized._changes import boundary_value
+        from visviva.generalized._boundary import boundary_value
 
         system: Any = self
         found: Any = boundary_value(system, number("t", t), position, rtol=rtol)

@@ -10,7 +10,9 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
+from visviva.generalized._equations import HamiltonsEquations, hamiltons_equations
 from visviva.generalized._fixed_points import fixed_points
+from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
@@ -29,7 +31,7 @@ __all__ = ["Hamiltonian"]
 
 
 @known_keywords
-class Hamiltonian(GeneralizedSystem):
+class Hamiltonian(GeneralizedSystem, SmallMotions):
     """A system by its Hamiltonian H(q, p, t).
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -112,8 +114,8 @@ class Hamiltonian(GeneralizedSystem):
         return float(self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0, n])
 
     @property
-    def equations(self) -> tuple[list[sympy.Expr], list[sympy.Expr]]:
-        """q̇ and ṗ as expressions of SymPy.
+    def equations(self) -> HamiltonsEquations:
+        """q̇ and ṗ as expressions of SymPy, further forces among them; ``print`` and notebooks show equations.
 
         Examples
         --------
@@ -121,7 +123,7 @@ class Hamiltonian(GeneralizedSystem):
         >>> vv.systems.henon_heiles().equations
         ([p_x, p_y], [-2*x*(y + 1/2), -x**2 + y**2/3 - 2*y*(1/2 - y/3)])
         """
-        return self._shown("conjugates"), self._shown("slopes")
+        return hamiltons_equations(self)
 
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian of the system, at the same state.

@@ -10,6 +10,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._changes import legendre, routhian
 from visviva.generalized._consistency import check_on_constraints
+from visviva.generalized._equations import EquationsOfMotion, euler_lagrange
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
@@ -165,6 +166,20 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         columns = self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])
         first: NDArray[np.float64] = columns[0]
         return first
+
+    @property
+    def equations(self) -> EquationsOfMotion:
+        """Lagrange's equations, momenta and Jacobi's integral as expressions of SymPy, to be printed or used.
+
+        They are put into SymPy's expressions when they are asked for; the core has derived them.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> print(vv.systems.coupled_oscillators().equations.equations[0])  # doctest: +ELLIPSIS
+        Eq(..., 0)
+        """
+        return euler_lagrange(self)
 
     @property
     def mass_matrix(self) -> sympy.Matrix:

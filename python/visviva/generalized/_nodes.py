@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "called", "recorded", "row"]
+__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "recorded"]
 
 Node: TypeAlias = tuple[str, list[int], float]
 
@@ -328,7 +328,7 @@ class Expression:
         raise self._refused(f"function {name} is not known to the compiled core; known: {_KNOWN}")
 
 
-def called(
+def call_with_expressions(
     nodes: Nodes, argument: str, function: Callable[..., Any], numbers: tuple[Any, ...], values: dict[str, Any]
 ) -> Any:
     """Call a function with expressions: what cannot be done with them is refused by name.
@@ -367,7 +367,7 @@ def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     return nodes.constant(_finite(argument, number))
 
 
-def row(expressions: Iterable[Expression]) -> NDArray[np.object_]:
+def expression_array(expressions: Iterable[Expression]) -> NDArray[np.object_]:
     """Give expressions as an array, which has arithmetic of its own: ``v @ v``, ``q - q0``."""
     listed = list(expressions)
     numbers = np.empty(len(listed), dtype=object)

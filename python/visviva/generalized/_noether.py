@@ -16,7 +16,7 @@ import numpy as np
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
-from visviva.generalized._calculus import Calculus, listed
+from visviva.generalized._calculus import Calculus, expression_list
 from visviva.generalized._probe import Finding, Probe
 from visviva.generalized._source import _label
 
@@ -107,7 +107,7 @@ class NoetherSymmetry(Record):
             raise InvalidInput(
                 "gauge", "L changes by the rate of a function of q and t: pass it to noether to have it in"
             )
-        return self._calculus.shown([self._momentum])[0]
+        return self._calculus.to_sympy([self._momentum])[0]
 
     @overload
     def conserved(self, trajectory: None = None) -> float: ...
@@ -176,7 +176,7 @@ def noether(system: Lagrangian, generator: Any, time_shift: Any, gauge: Any) -> 
     xi = c.of_user("generator", _by_coordinate(system, generator))
     tau = c.of_user("time_shift", [time_shift])[0]
     given = c.of_user("gauge", [0 if gauge is None else gauge])[0]
-    *moved, of_tau, of_gauge, of_L = c.derived([*xi, tau, given, *c.of_system("function")])
+    *moved, of_tau, of_gauge, of_L = c.with_derivatives([*xi, tau, given, *c.of_system("function")])
     v = c.velocities()
     for argument, rows in (("generator", moved), ("time_shift", [of_tau]), ("gauge", [of_gauge])):
         if any(not c.is_zero(slope) for row in rows for slope in row[n + 1 : 2 * n + 1]):
@@ -194,7 +194,7 @@ def noether(system: Lagrangian, generator: Any, time_shift: Any, gauge: Any) -> 
     momentum = sum((momenta[i] * (flow[i] - v[i] * shift) for i in range(n)), L * shift) - of_gauge[0]
     test = _Test(c)
     others = list(_others(system, c, flow, shift, v))
-    whole = c.derived([sum(terms, c.constant(0.0))])[0]
+    whole = c.with_derivatives([sum(terms, c.constant(0.0))])[0]
     unchanged = test.vanish([[(term,) for term in terms]])
     kind, found = "L does not change", None
     if (not unchanged.holds or unchanged.open) and gauge is None:
@@ -237,7 +237,7 @@ def _by_coordinate(system: Lagrangian, generator: Any) -> list[Any]:
         if unknown:
             raise InvalidInput("generator", f"there is no coordinate {unknown[0]!r}; there are {names}")
         return [by_name.get(name, 0) for name in names]
-    return listed("generator", generator, n, f"an expression for each of {names}")
+    return expression_list("generator", generator, n, f"an expression for each of {names}")
 
 
 def _equations(c: Calculus, terms: list[Expression], v: list[Expression], n: int) -> list[list[tuple[Expression, ...]]]:
@@ -245,8 +245,8 @@ def _equations(c: Calculus, terms: list[Expression], v: list[Expression], n: int
 
     Term by term: what a sum is made of tells the size against which it vanishes.
     """
-    first = c.derived(terms)
-    second = c.derived([row[n + 1 + i] for row in first for i in range(n)])
+    first = c.with_derivatives(terms)
+    second = c.with_derivatives([row[n + 1 + i] for row in first for i in range(n)])
     conditions: list[list[tuple[Expression, ...]]] = []
     for i in range(n):
         of = [second[k * n + i] for k in range(len(terms))]
@@ -267,15 +267,15 @@ def _others(
     description, n = system._source.description, len(v)
     along = [flow[i] - v[i] * shift for i in range(n)]
     if description["forces"]:
-        forces = c.taken(description["nodes"], description["forces"])
+        forces = c.adopted(description["nodes"], description["forces"])
         yield "the forces do work along it", [along[i] * forces[i] for i in range(n)]
     if description["dissipation"] is not None:
-        row = c.derived(c.taken(description["nodes"], [description["dissipation"]]))[0]
+        row = c.with_derivatives(c.adopted(description["nodes"], [description["dissipation"]]))[0]
         yield "the dissipation does work along it", [along[i] * row[n + 1 + i] for i in range(n)]
-    for index, row in enumerate(c.derived(c.taken(description["nodes"], description["holonomic"]))):
+    for index, row in enumerate(c.with_derivatives(c.adopted(description["nodes"], description["holonomic"]))):
         yield f"it leaves constraint {index}", [*(flow[i] * row[1 + i] for i in range(n)), shift * row[2 * n + 1]]
     first = len(description["holonomic"])
-    for index, row in enumerate(c.derived(c.taken(description["nodes"], description["nonholonomic"]))):
+    for index, row in enumerate(c.with_derivatives(c.adopted(description["nodes"], description["nonholonomic"]))):
         terms = [along[i] * row[n + 1 + i] for i in range(n)]
         yield f"it leaves constraint {first + index}", [*terms, shift * row[0]]
 
@@ -292,10 +292,10 @@ class _Test:
         c, findings = self._calculus, []
         for condition in conditions:
             parts = [part for term in condition for part in term]
-            whole = c.derived([sum(parts, c.constant(0.0))])[0][0]
+            whole = c.with_derivatives([sum(parts, c.constant(0.0))])[0][0]
             if c.is_zero(whole):
                 continue
-            found = self._probe.look(parts)
+            found = self._probe.check_sum(parts)
             if not found.known:
                 raise InvalidInput("generator", "L has values at too few states near the start to test it there")
             findings.append(found)

@@ -56,7 +56,7 @@ def as_path(system: Lagrangian, path: Any, degree: int, *, ascending: bool = Fal
     """
     n = len(system.coordinates)
     if isinstance(path, GeneralizedTrajectory):
-        return _of_run(path, n, ascending)
+        return _path_of_run(path, n, ascending)
     if not isinstance(path, (tuple, list)) or len(path) != 2:
         raise InvalidInput(
             "path", f"expected a trajectory of a Lagrangian, or times and places as (t, q), got {type(path).__name__}"
@@ -65,7 +65,7 @@ def as_path(system: Lagrangian, path: Any, degree: int, *, ascending: bool = Fal
     given = np.asarray(path[1])
     shape = (len(t),) if n == 1 and given.ndim == 1 else (len(t), n)
     places = float_array("path[1]", path[1], shape).reshape(len(t), n)
-    return through(t, places, whole_number("degree", degree, low=1, high=_HIGHEST_DEGREE))
+    return interpolated(t, places, whole_number("degree", degree, low=1, high=_HIGHEST_DEGREE))
 
 
 def _times(t: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -76,7 +76,7 @@ def _times(t: NDArray[np.float64]) -> NDArray[np.float64]:
     return t
 
 
-def through(t: NDArray[np.float64], places: NDArray[np.float64], degree: int) -> Path:
+def interpolated(t: NDArray[np.float64], places: NDArray[np.float64], degree: int) -> Path:
     """Give the path whose pieces are polynomials through the nearest degree + 1 places."""
     count, degree = len(t), min(degree, len(t) - 1)
     first = np.clip(np.arange(count - 1) - (degree - 1) // 2, 0, count - 1 - degree)
@@ -86,11 +86,11 @@ def through(t: NDArray[np.float64], places: NDArray[np.float64], degree: int) ->
     differences = places[chosen] - places[:-1, None, :]
     coefficients = np.linalg.solve(u[:, :, None] ** np.arange(degree + 1), differences)
     coefficients[:, 0] = places[:-1]
-    coarser = None if degree == 1 else through(t, places, max(1, degree - 2))
+    coarser = None if degree == 1 else interpolated(t, places, max(1, degree - 2))
     return Path(t, coefficients, coarser)
 
 
-def _of_run(out: GeneralizedTrajectory, n: int, ascending: bool) -> Path:
+def _path_of_run(out: GeneralizedTrajectory, n: int, ascending: bool) -> Path:
     system = out.system
     if system._source.kind != "lagrangian":
         raise InvalidInput("path", "expected a run of a Lagrangian; hamiltonian.lagrangian() makes one to run")

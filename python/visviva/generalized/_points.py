@@ -44,7 +44,7 @@ def animate(
         if points is None:
             raise InvalidInput(
                 "points",
-                f"nobody said where the points of coordinates {list(system.coordinates)} are; give "
+                f"the points of the coordinates {list(system.coordinates)} are not known; give "
                 "points=lambda q, t, **parameters: [(x, y), …]",
             )
     if not callable(points):

@@ -78,7 +78,7 @@ class Probe:
         self._moved_t = self._t * (1.0 + _JOLT * rng.choice([-1.0, 1.0], self._t.shape))
         self._moved = self._states * (1.0 + _JOLT * rng.choice([-1.0, 1.0], self._states.shape))
 
-    def look(self, parts: list[Expression]) -> Finding:
+    def check_sum(self, parts: list[Expression]) -> Finding:
         """Look at a sum."""
         c = self._calculus
         terms = terms_of(c, parts)
@@ -157,26 +157,26 @@ def terms_of(c: Calculus, parts: list[Expression]) -> list[Expression]:
     nodes = c._nodes
     from visviva.generalized._nodes import Expression
 
-    def of(place: int) -> list[int]:
+    def expand(place: int) -> list[int]:
         operation, arguments, _ = nodes.all[place]
         if operation == "sum":
-            return [each for argument in arguments for each in of(argument)]
+            return [each for argument in arguments for each in expand(argument)]
         if operation == "quotient":
-            return [nodes.add("quotient", (each, arguments[1])) for each in of(arguments[0])]
+            return [nodes.add("quotient", (each, arguments[1])) for each in expand(arguments[0])]
         # Powers stay: multiplied out, differences would drown in what they are differences of.
         if operation == "product" and len(set(arguments)) == len(arguments):
             found: list[tuple[int, ...]] = [()]
             for argument in arguments:
-                found = [(*before, each) for before in found for each in of(argument)]
+                found = [(*before, each) for before in found for each in expand(argument)]
                 if len(found) > _MOST_TERMS:
                     return [place]
             return [nodes.add("product", each) for each in found]
         return [place]
 
-    found = [each for part in parts for each in of(part._place)]
+    found = [each for part in parts for each in expand(part._place)]
     # Those that occur twice are one.
     unique = [Expression(nodes, place) for place in dict.fromkeys(found)]
     counts = [found.count(each._place) for each in unique]
     scaled = [each if count == 1 else each * float(count) for each, count in zip(unique, counts, strict=True)]
-    rows = c.derived(scaled)
+    rows = c.with_derivatives(scaled)
     return [row[0] for row in rows if not c.is_zero(row[0])]

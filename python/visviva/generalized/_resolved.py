@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["judge"]
+__all__ = ["warn_if_unresolved"]
 
 
-def judge(
+def warn_if_unresolved(
     system: GeneralizedSystem,
     asked: dict[str, Any],
     starts: NDArray[np.float64],

@@ -12,8 +12,8 @@ from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._methods import check_atol, check_rtol, method_name
-from visviva.generalized._resolved import judge
-from visviva.generalized._states import States, whole
+from visviva.generalized._resolved import warn_if_unresolved
+from visviva.generalized._states import States, as_system
 from visviva.status import Status
 
 if TYPE_CHECKING:
@@ -73,10 +73,10 @@ class Runs(States):
             "looked_for": (),
         }
         if not (isinstance(events, tuple) and not events):
-            from visviva.generalized._events import described, events_of, told
+            from visviva.generalized._events import described, events_of, events_to_core
 
             looked_for = events_of(events)
-            asked |= {"looked_for": described(looked_for), "events": told(self, looked_for)}
+            asked |= {"looked_for": described(looked_for), "events": events_to_core(self, looked_for)}
         return asked, outputs
 
     def _absolute(self, atol: Any, method: str) -> list[float]:
@@ -206,7 +206,7 @@ class Runs(States):
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
         if np.ndim(t) == 0 and STATUS[result["endings"][0]] is Status.STOPPED:
             _end_at_the_stop(result)
-        out = GeneralizedTrajectory(whole(self), result, asked)
+        out = GeneralizedTrajectory(as_system(self), result, asked)
         if result["interrupted"]:
             raise Interrupted("the run was interrupted", out)
         failure = result["failures"][0]
@@ -214,7 +214,9 @@ class Runs(States):
             raise ConvergenceError(failure, result["reached"][0], out)
         assert len(out.t) == len(outputs) or out.status is Status.STOPPED
         if len(out.t):
-            judge(whole(self), asked, start[None, :], (out._states[-1:], float(out.t[-1])), self._values[None, :])
+            warn_if_unresolved(
+                as_system(self), asked, start[None, :], (out._states[-1:], float(out.t[-1])), self._values[None, :]
+            )
         return out
 
     def _run(
@@ -275,7 +277,7 @@ class Runs(States):
         from visviva.generalized._plan import GeneralizedPlan
 
         asked, _ = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
-        return GeneralizedPlan._of(whole(self), asked)
+        return GeneralizedPlan._of(as_system(self), asked)
 
 
 def _end_at_the_stop(result: dict[str, Any]) -> None:

@@ -21,7 +21,7 @@ from visviva._keywords import known_keywords
 from visviva._stored import GENERALIZED, Damaged, check_all, check_keys, check_version
 from visviva.events import Event
 from visviva.generalized._source import Source
-from visviva.generalized._states import _restored, whole
+from visviva.generalized._states import _system_from_parts, as_system
 from visviva.generalized._symbolic import named_symbols, symbols_of_names
 from visviva.status import Status
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from visviva.generalized._system import GeneralizedSystem
     from visviva.generalized._trajectory import GeneralizedTrajectory
 
-__all__ = ["VERSION", "Saved", "restored"]
+__all__ = ["VERSION", "Saved", "run_from_file"]
 
 VERSION = 1
 
@@ -111,7 +111,7 @@ class Saved:
         run: Any = self
         ensemble = hasattr(run, "ensemble")
         system = run.ensemble.system if ensemble else run.system
-        method, looked_for, arrays = _of_copies(run) if ensemble else _of_one(run)
+        method, looked_for, arrays = _arrays_of_ensemble(run) if ensemble else _arrays_of_run(run)
         header = {
             "format": GENERALIZED,
             "version": VERSION,
@@ -128,27 +128,27 @@ class Saved:
         write(path, header, {name: np.asarray(arrays[name], dtype=dtype) for name, (dtype, _) in _ARRAYS.items()})
 
 
-def _of_one(run: GeneralizedTrajectory) -> tuple[str, tuple[Event, ...], dict[str, Any]]:
+def _arrays_of_run(run: GeneralizedTrajectory) -> tuple[str, tuple[Event, ...], dict[str, Any]]:
     found, looked_for = run._found
     arrays = {name: [getattr(run, name)] for name in ("status", "steps", "evaluations", "longest_step")}
     arrays |= {"start": [run.system._start()], "parameters": [run.system._values], "lengths": [len(run.t)]}
-    return run.method, looked_for, arrays | {"times": run.t, "t": run.t, "y": run._states} | _found(found)
+    return run.method, looked_for, arrays | {"times": run.t, "t": run.t, "y": run._states} | _event_arrays(found)
 
 
-def _of_copies(run: GeneralizedEnsembleTrajectory) -> tuple[str, tuple[Event, ...], dict[str, Any]]:
+def _arrays_of_ensemble(run: GeneralizedEnsembleTrajectory) -> tuple[str, tuple[Event, ...], dict[str, Any]]:
     result = run._result
     arrays = {name: result[name] for name in ("t", "y", "lengths", "steps", "evaluations", "longest_step")}
     arrays |= {"start": run.ensemble._states, "parameters": run.ensemble._parameters}
     asked = run._asked
-    return asked["method"], asked["looked_for"], arrays | {"times": run.t, "status": run.status} | _found(result)
+    return asked["method"], asked["looked_for"], arrays | {"times": run.t, "status": run.status} | _event_arrays(result)
 
 
-def _found(result: dict[str, Any]) -> dict[str, Any]:
+def _event_arrays(result: dict[str, Any]) -> dict[str, Any]:
     kept = {"found": "found", "events/which": "found_which", "events/t": "found_t", "events/state": "found_y"}
     return {name: result[own] for name, own in kept.items()}
 
 
-def restored(
+def run_from_file(
     header: dict[str, Any], arrays: dict[str, NDArray[Any]]
 ) -> GeneralizedTrajectory | GeneralizedEnsembleTrajectory:
     """The run or the ensemble of a file, of which everything is checked.
@@ -235,17 +235,17 @@ def _points(where: Any) -> Any:
 
 
 def _system(header: dict[str, Any]) -> GeneralizedSystem:
-    told = header["source"]
-    description = dict(told["description"])
+    stored = header["source"]
+    description = dict(stored["description"])
     description["nodes"] = [(str(operation), list(of), float(value)) for operation, of, value in description["nodes"]]
-    names, parameters = tuple(told["names"]), tuple(told["parameters"])
+    names, parameters = tuple(stored["names"]), tuple(stored["parameters"])
     if not all(isinstance(name, str) for name in (*names, *parameters)):
         raise Damaged("the file has names that are no words")
-    symbols = None if told["symbols"] is None else symbols_of_names(told["symbols"])
+    symbols = None if stored["symbols"] is None else symbols_of_names(stored["symbols"])
     if symbols is not None and tuple(map(len, symbols)) != (len(names), len(names), len(parameters)):
         raise Damaged("the file has symbols of another system than its own")
-    points = None if told["points"] is None else _points(told["points"])
-    source = Source(told["kind"], names, symbols, parameters, description, points)
+    points = None if stored["points"] is None else _points(stored["points"])
+    source = Source(stored["kind"], names, symbols, parameters, description, points)
     if (description["kind"], description["coordinates"], description["parameters"]) != (
         source.kind,
         len(names),
@@ -253,7 +253,7 @@ def _system(header: dict[str, Any]) -> GeneralizedSystem:
     ):
         raise Damaged("the file has equations of another system than its own")
     state = (header["position"], header["second"], header["t0"])
-    return whole(_restored(_kinds()[source.kind], source, header["values"], state))
+    return as_system(_system_from_parts(_kinds()[source.kind], source, header["values"], state))
 
 
 def _kinds() -> dict[str, type[GeneralizedSystem]]:

@@ -11,6 +11,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import Linearization, linearization
 from visviva.generalized._equilibria import Equilibrium, equilibria
+from visviva.generalized._returns import action_of_hamiltonian, gauge_part, period_of_hamiltonian
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,7 +21,7 @@ __all__ = ["SmallMotions"]
 
 @known_keywords
 class SmallMotions:
-    """Base of `Lagrangian`: equilibria, normal modes, periods."""
+    """Base of `Lagrangian` and `Hamiltonian`: equilibria, normal modes, periods."""
 
     __slots__ = ()
 
@@ -54,7 +55,7 @@ class SmallMotions:
         >>> vv.systems.double_pendulum().linearize(at=[0.0, 0.0]).frequencies.round(6)
         array([2.397199, 5.787351])
         """
-        return linearization(self, at)
+        return linearization(self._by_velocities(), at)
 
     def equilibria(self: Any, near: ArrayLike | None = None) -> list[Equilibrium]:
         """Places where the system stays, their stability and their frequencies.
@@ -125,10 +126,11 @@ class SmallMotions:
         place = (
             (self.position if self.position is not None else np.zeros(len(self.coordinates))) if near is None else near
         )
-        found = equilibria(self, place)
+        of = self._by_velocities()
+        found = equilibria(of, place)
         if not found:
             raise InvalidInput("near", "Newton's method finds no equilibrium from there; start it elsewhere")
-        return linearization(self, found[0].position)
+        return linearization(of, found[0].position)
 
     def period(self: Any, *, turn: float | None = None) -> float:
         """The period of a motion of one degree of freedom, by quadrature.
@@ -158,6 +160,8 @@ class SmallMotions:
         of let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up
         to it.
         Landau & Lifshitz, Mechanics, 3rd ed., (11.5).
+        Of a Hamiltonian that is not quadratic in the momentum it is the time of return along the motion itself, to
+        1e-12 where the function is smooth.
 
         Examples
         --------
@@ -165,6 +169,9 @@ class SmallMotions:
         >>> abs(vv.systems.oscillator(k=4.0, m=1.0, position=[1.0]).period() - math.pi) < 1e-14
         True
         """
+        turn = self._checked_turn(turn)
+        if self._source.kind == "hamiltonian":
+            return period_of_hamiltonian(self, turn)
         return float(self._oscillation(turn)[2])
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
@@ -198,15 +205,28 @@ class SmallMotions:
         >>> abs(oscillator.action_variable() - oscillator.energy / 2.0) < 1e-14
         True
         """
+        turn = self._checked_turn(turn)
+        if self._source.kind == "hamiltonian":
+            return action_of_hamiltonian(self, turn)
         return float(self._oscillation(turn)[3])
 
-    def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
+    def _checked_turn(self: Any, turn: float | None) -> float | None:
         self._conserves()
         if turn is not None and not number("turn", turn):
             raise InvalidInput("turn", "expected how far the coordinate goes in a period, as 2π, got 0")
-        found: tuple[float, float, float, float] = self._model.oscillation(self.t0, self._start(), self._values, turn)
-        return found
+        return None if turn is None else number("turn", turn)
+
+    def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
+        low, high, period, action = self._model.oscillation(self.t0, self._start(), self._values, turn)
+        return low, high, period, action if turn is None else action + gauge_part(self, turn)
+
+    def _by_velocities(self: Any) -> Any:
+        """Give the Lagrangian, which small motions are those of."""
+        return self.lagrangian() if self._source.kind == "hamiltonian" else self
 
     def _conserves(self: Any) -> None:
         if not self._structure["conserves_energy"]:
-            raise InvalidInput("L", "a period needs energy to be conserved: no time, no dissipation, no further forces")
+            function = "H" if self._source.kind == "hamiltonian" else "L"
+            raise InvalidInput(
+                function, "a period needs energy to be conserved: no time, no dissipation, no further forces"
+            )

@@ -9,7 +9,7 @@ from typing import Any
 from visviva._arrays import number
 from visviva._keywords import check_call
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import Expression, Nodes, called, recorded, row
+from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 __all__ = ["Source", "calls", "described"]
@@ -190,10 +190,14 @@ def calls(
     def walk(argument: str, function: Any) -> int:
         if not callable(function):
             return nodes.constant(number(argument, function))
-        first = row(expression("variable", float(i)) for i in range(n))
-        second = row(expression("variable", float(n + i)) for i in range(n))
+        first = expression_array(expression("variable", float(i)) for i in range(n))
+        second = expression_array(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
         check_call(argument, function, ("position", second_name, "t"), parameters)
-        return recorded(nodes, called(nodes, argument, function, (first, second, expression("time")), values), argument)
+        return recorded(
+            nodes,
+            call_with_expressions(nodes, argument, function, (first, second, expression("time")), values),
+            argument,
+        )
 
     return walk

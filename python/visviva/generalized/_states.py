@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from visviva.generalized._system import GeneralizedSystem
     from visviva.typing import ParameterValues
 
-__all__ = ["States", "whole"]
+__all__ = ["States", "as_system"]
 
 
 @known_keywords
@@ -74,7 +74,7 @@ class States(Shown):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self._second, self.t0)
-        return _restored, (type(self), self._source, self._values.tolist(), state)
+        return _system_from_parts, (type(self), self._source, self._values.tolist(), state)
 
     def __repr__(self) -> str:
         names = ", ".join(self.coordinates)
@@ -145,7 +145,7 @@ class States(Shown):
         name = self._other(own)
         moved = self._at(position, None, parameters, t0)
         n = len(self.coordinates)
-        transform = whole(moved).legendre_transform()
+        transform = as_system(moved).legendre_transform()
         return moved._at(None, transform.conjugate(moved._start()[:n], float_array(name, other, (n,))))
 
     def ensemble(
@@ -189,7 +189,7 @@ class States(Shown):
             own = self._conjugates(position, self._other(own), other, parameters)
         from visviva.generalized._ensemble import GeneralizedEnsemble
 
-        return GeneralizedEnsemble(whole(self), position, own, parameters)
+        return GeneralizedEnsemble(as_system(self), position, own, parameters)
 
     def _other(self, own: ArrayLike | None) -> str:
         """Give the name of what the second half of a state is not, unless both are given."""
@@ -212,7 +212,7 @@ class States(Shown):
         given = float_array(name, other, ("B", n), sizes)
         if places is None:
             places = np.broadcast_to(self._start()[:n], given.shape)
-        return whole(self).legendre_transform().conjugate(places, given)
+        return as_system(self).legendre_transform().conjugate(places, given)
 
     def _at(
         self,
@@ -250,14 +250,14 @@ class States(Shown):
         return np.concatenate([self.position, self._second])
 
 
-def whole(states: States) -> GeneralizedSystem:
+def as_system(states: States) -> GeneralizedSystem:
     """Give the states as the system that they are always part of."""
     system: Any = states
     found: GeneralizedSystem = system
     return found
 
 
-def _restored(cls: type[States], source: Source, values: list[float], state: Any) -> States:
+def _system_from_parts(cls: type[States], source: Source, values: list[float], state: Any) -> States:
     system = object.__new__(cls)
     system._prepare(source, values, state)
     return system

@@ -184,10 +184,10 @@ class Symbols:
     def _walk(self, argument: str, tree: Any) -> int:
         place = self._known.get(tree)
         if place is None:
-            place = self._known[tree] = self._made(argument, tree)
+            place = self._known[tree] = self._new_node(argument, tree)
         return place
 
-    def _made(self, argument: str, tree: Any) -> int:
+    def _new_node(self, argument: str, tree: Any) -> int:
         sp, nodes = self._sympy, self._nodes
         if tree.is_Number or tree.is_NumberSymbol:
             value = complex(tree)
@@ -307,12 +307,12 @@ def symbols_of_names(kept: list[list[dict[str, Any]]]) -> _Groups | None:
     except InvalidInput:
         return None
 
-    def made(each: dict[str, Any]) -> Any:
+    def symbol_of(each: dict[str, Any]) -> Any:
         if "velocity" in each:
-            return made(each["velocity"]).diff(time._sympy_())
+            return symbol_of(each["velocity"]).diff(time._sympy_())
         if "function" in each:
             return sp.Function(str(each["function"]))(time._sympy_())
         return sp.Symbol(str(each["symbol"]), **each["assumptions"])
 
-    first, second, parameters = (tuple(made(each) for each in group) for group in kept)
+    first, second, parameters = (tuple(symbol_of(each) for each in group) for group in kept)
     return first, second, parameters

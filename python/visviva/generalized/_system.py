@@ -104,15 +104,17 @@ class GeneralizedSystem(Runs, Flow):
         return self._trees(*self._model.expressions(name))
 
     def _trees(self, nodes: Sequence[Node], roots: Sequence[int]) -> list[Any]:
-        sp = sympy()
-        if self._source.symbols is None:
-            letter = "v" if self._source.kind == "lagrangian" else "p"
-            first = [sp.Symbol(name) for name in self.coordinates]
-            second = [sp.Symbol(f"{letter}_{name}") for name in self.coordinates]
-            parameters: Any = [sp.Symbol(name) for name in self.parameters]
-        else:
-            first, second, parameters = map(list, self._source.symbols)
+        (first, second), source = self._symbols(), self._source.symbols
+        parameters = [sympy().Symbol(name) for name in self.parameters] if source is None else list(source[2])
         return trees(nodes, roots, [*first, *second], parameters)
+
+    def _symbols(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Symbols of coordinates, and of velocities or momenta; those of a function are made of names."""
+        if self._source.symbols is not None:
+            return self._source.symbols[0], self._source.symbols[1]
+        sp, letter = sympy(), "v" if self._source.kind == "lagrangian" else "p"
+        first = tuple(sp.Symbol(name) for name in self.coordinates)
+        return first, tuple(sp.Symbol(f"{letter}_{name}") for name in self.coordinates)
 
     def evaluate(self, *expressions: Formula, trajectory: GeneralizedTrajectory | None = None) -> NDArray[np.float64]:
         """Values of further expressions, at the start or along a trajectory.

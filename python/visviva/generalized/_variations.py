@@ -202,7 +202,7 @@ class Variations:
         return discrete_action(self, path, method)
 
     def accessory_problem(self: Any, path: GeneralizedPath, *, degree: int = 5) -> AccessoryProblem:
-        """Whether the action is least along a path among its neighbours between the same ends, or only stationary.
+        """Whether the action is least along a path among its neighbors between the same ends, or only stationary.
 
         Parameters
         ----------

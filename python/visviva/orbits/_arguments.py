@@ -36,7 +36,7 @@ def broadcast(
     return shape, flat, [np.broadcast_to(x, (*shape, 3)).reshape(-1, 3) for x in triples.values()]
 
 
-def shaped(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
+def with_shape(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
     """Give the values their axes; a number if there are none."""
     result: NDArray[np.float64] = values.reshape((*shape, *values.shape[1:]))[()]
     return result
@@ -44,7 +44,7 @@ def shaped(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.fl
 
 def fields(columns: dict[str, NDArray[np.float64]], shape: tuple[int, ...]) -> dict[str, NDArray[np.float64]]:
     """Give each named column its axes."""
-    return {name: shaped(values, shape) for name, values in columns.items()}
+    return {name: with_shape(values, shape) for name, values in columns.items()}
 
 
 def anomaly(
@@ -54,4 +54,4 @@ def anomaly(
     if not isinstance(repulsive, (bool, np.bool_)):
         raise InvalidInput("repulsive", f"expected True or False, got {repulsive!r}")
     shape, flat, _ = broadcast({argument: given, "eccentricity": eccentricity}, {})
-    return shaped(_core.orbit_anomaly(name, flat[0], flat[1], bool(repulsive)), shape)
+    return with_shape(_core.orbit_anomaly(name, flat[0], flat[1], bool(repulsive)), shape)

@@ -12,9 +12,9 @@ from visviva._arrays import number, positive
 from visviva._declared import wrapped
 from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
-from visviva._text import short, table
+from visviva._text import short_repr, table
 from visviva.errors import InvalidInput
-from visviva.orbits._arguments import broadcast, fields, shaped
+from visviva.orbits._arguments import broadcast, fields, with_shape
 from visviva.potentials import Potential
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def effective_potential(
     array([ 0.   , -0.5  , -0.375])
     """
     shape, flat = checked(r=r, angular_momentum=angular_momentum, mass=mass)
-    return shaped(_core.central_effective(core_potentials(potential), flat[0], flat[1], flat[2], path=False), shape)
+    return with_shape(_core.central_effective(core_potentials(potential), flat[0], flat[1], flat[2], path=False), shape)
 
 
 @known_keywords
@@ -153,7 +153,7 @@ def path_equation(
     shape, flat = checked(u=u, angular_momentum=angular_momentum, mass=mass)
     if not np.all(flat[1] > 0.0):
         raise InvalidInput("angular_momentum", "expected numbers above 0: a radial motion has no path u(θ)")
-    return shaped(_core.central_effective(core_potentials(potential), flat[0], flat[1], flat[2], path=True), shape)
+    return with_shape(_core.central_effective(core_potentials(potential), flat[0], flat[1], flat[2], path=True), shape)
 
 
 @known_keywords
@@ -200,7 +200,7 @@ class CircularOrbits(Shown):
     apsidal_angle: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        return short(self)
+        return short_repr(self)
 
     def __str__(self) -> str:
         return table(self)

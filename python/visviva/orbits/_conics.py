@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from visviva import _core
 from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import short, table
-from visviva.orbits._arguments import broadcast, fields, shaped
+from visviva._text import short_repr, table
+from visviva.orbits._arguments import broadcast, fields, with_shape
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,7 +76,7 @@ class Conic(Shown):
     turning_angle: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        return short(self)
+        return short_repr(self)
 
     def __str__(self) -> str:
         return table(self)
@@ -95,7 +95,7 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     strength : array_like
         γ in energy times length: positive attracts (G M m), negative repels.
     position, velocity : array_like, shape (…, 3)
-        State relative to the centre.
+        State relative to the center.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     Raises
     ------
     InvalidInput
-        For a wrong shape, NaN or infinity, a mass that is not positive, γ = 0, or a position at the centre.
+        For a wrong shape, NaN or infinity, a mass that is not positive, γ = 0, or a position at the center.
 
     References
     ----------
@@ -202,7 +202,7 @@ def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
     50.265482457437
     """
     shape, flat, _ = broadcast({"mu": mu, "semi_major_axis": semi_major_axis}, {})
-    return shaped(_core.orbit_period(*flat), shape)
+    return with_shape(_core.orbit_period(*flat), shape)
 
 
 @known_keywords
@@ -239,14 +239,14 @@ def semi_major_axis(mu: ArrayLike, period: ArrayLike) -> NDArray[np.float64]:
     4.0
     """
     shape, flat, _ = broadcast({"mu": mu, "period": period}, {})
-    return shaped(_core.orbit_semi_major_axis(*flat), shape)
+    return with_shape(_core.orbit_semi_major_axis(*flat), shape)
 
 
 @known_keywords
 def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDArray[np.float64]:
-    """Find the time to fall from rest at one distance from the centre to another.
+    """Find the time to fall from rest at one distance from the center to another.
 
-    √(R³/2μ)(θ + sin θ cos θ) with r = R cos²θ; to the centre itself π√(R³/8μ).
+    √(R³/2μ)(θ + sin θ cos θ) with r = R cos²θ; to the center itself π√(R³/8μ).
 
     Units: μ is in length³ / time², in the caller's units of both.
 
@@ -280,9 +280,9 @@ def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDA
     3.14159265359
     """
     shape, flat, _ = broadcast({"mu": mu, "start": start, "end": end}, {})
-    return shaped(_core.orbit_free_fall_time(*flat), shape)
+    return with_shape(_core.orbit_free_fall_time(*flat), shape)
 
 
 def _conic(shape: tuple[int, ...], flat: list[NDArray[np.float64]], columns: dict[str, NDArray[np.float64]]) -> Conic:
     mass, strength = flat[:2]
-    return Conic(mass=shaped(mass, shape), strength=shaped(strength, shape), **fields(columns, shape))
+    return Conic(mass=with_shape(mass, shape), strength=with_shape(strength, shape), **fields(columns, shape))

@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._html import Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import table
-from visviva.orbits._arguments import broadcast, fields, shaped
+from visviva.orbits._arguments import broadcast, fields, with_shape
 from visviva.orbits._rows import OfOrbits
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
 class Elements(OfOrbits, Shown):
-    """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
+    """The elements of orbits about a fixed center, per unit mass; what :func:`elements` returns.
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
 
@@ -49,7 +49,7 @@ class Elements(OfOrbits, Shown):
         A = v×L − μ r/|r|: towards the pericenter, of length |μ| e.
     hodograph_center, hodograph_radius : ndarray
         The velocities lie on a circle about this vector with the radius |μ|/L; radial motion has no
-        centre (NaN) and an infinite radius.
+        center (NaN) and an infinite radius.
     eccentricity : ndarray
         e ≥ 0.
     semi_major_axis, semi_minor_axis : ndarray
@@ -124,24 +124,24 @@ class Elements(OfOrbits, Shown):
     turning_angle: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        from visviva.orbits._told_elements import in_a_line
+        from visviva.orbits._elements_table import in_a_line
 
         return in_a_line(self)
 
     def __str__(self) -> str:
-        from visviva.orbits._told_elements import is_few
+        from visviva.orbits._elements_table import is_few
 
         return table(self) if is_few(self) else as_text(self._sheet())
 
     def _sheet(self) -> Sheet:
-        from visviva.orbits._told_elements import told
+        from visviva.orbits._elements_table import elements_table
 
-        return told(self)
+        return elements_table(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A dataclass would leave behind what is no field: the times and names of the rows.
         own = {name: getattr(self, name) for name in type(self).__slots__}
-        return labelled, (own, getattr(self, "_axes", {}))
+        return labeled, (own, getattr(self, "_axes", {}))
 
     @property
     def longitude_of_ascending_node(self) -> NDArray[np.float64]:
@@ -254,11 +254,11 @@ class Elements(OfOrbits, Shown):
         return plot_elements(self, element, ax)
 
 
-def labelled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
+def labeled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
     """Elements that know what stands along their axes."""
-    made = Elements(**columns)
-    made._along(axes)
-    return made
+    elements = Elements(**columns)
+    elements._along(axes)
+    return elements
 
 
 @known_keywords
@@ -274,7 +274,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     mu : array_like
         Strength of the acceleration −μ r/|r|³: G(m₁ + m₂), negative for repulsion, not 0.
     position, velocity : array_like, shape (…, 3)
-        State relative to the centre.
+        State relative to the center.
 
     Returns
     -------
@@ -284,7 +284,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     Raises
     ------
     InvalidInput
-        For a wrong shape, NaN or infinity, a position at the centre, or μ = 0, for which there is no conic.
+        For a wrong shape, NaN or infinity, a position at the center, or μ = 0, for which there is no conic.
 
     References
     ----------
@@ -300,4 +300,4 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     """
     shape, (mu_,), (position_, velocity_) = broadcast({"mu": mu}, {"position": position, "velocity": velocity})
     columns = _core.orbit_elements(mu_, position_, velocity_)
-    return Elements(mu=shaped(mu_, shape), **fields(columns, shape))
+    return Elements(mu=with_shape(mu_, shape), **fields(columns, shape))

@@ -27,7 +27,7 @@ def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive:
     eccentricity : array_like
         e > 1.
     repulsive : bool, optional
-        Whether the centre repels: the other branch of the hyperbola.
+        Whether the center repels: the other branch of the hyperbola.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def mean_from_hyperbolic(
     eccentricity : array_like
         e > 1.
     repulsive : bool, optional
-        Whether the centre repels: the other branch of the hyperbola.
+        Whether the center repels: the other branch of the hyperbola.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def true_from_hyperbolic(
     eccentricity : array_like
         e > 1.
     repulsive : bool, optional
-        Whether the centre repels: the other branch of the hyperbola.
+        Whether the center repels: the other branch of the hyperbola.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def hyperbolic_from_true(
     eccentricity : array_like
         e > 1.
     repulsive : bool, optional
-        Whether the centre repels: the other branch of the hyperbola.
+        Whether the center repels: the other branch of the hyperbola.
 
     Returns
     -------

@@ -10,7 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._html import Record
 from visviva._keywords import known_keywords
-from visviva.orbits._arguments import fields, shaped
+from visviva.orbits._arguments import fields, with_shape
 from visviva.orbits._central import checked, core_potentials
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
 class RadialMotion(Record):
-    """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of what was asked.
+    """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of the arguments.
 
     Units: those of the caller, one consistent system; angles in radians.
 
@@ -327,7 +327,7 @@ def time_of_flight(
     given = {"start": start, "end": end, "energy": energy, "angular_momentum": angular_momentum, "mass": mass}
     shape, flat = checked(**given)
     times, _ = _core.central_passage(core_potentials(potential), *flat)
-    return shaped(times, shape)
+    return with_shape(times, shape)
 
 
 @known_keywords
@@ -382,4 +382,4 @@ def swept_angle(
     given = {"start": start, "end": end, "energy": energy, "angular_momentum": angular_momentum, "mass": mass}
     shape, flat = checked(**given)
     _, angles = _core.central_passage(core_potentials(potential), *flat)
-    return shaped(angles, shape)
+    return with_shape(angles, shape)

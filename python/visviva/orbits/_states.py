@@ -113,7 +113,7 @@ def propagate(
     mu : array_like, shape (…)
         Strength of the acceleration −μ r/|r|³: G(m₁ + m₂), negative for repulsion, 0 for a straight line.
     position, velocity : array_like, shape (…, 3)
-        State relative to the centre at time 0.
+        State relative to the center at time 0.
     t : array_like
         Times since then, of any shape and sign; every orbit is asked for all of them.
 
@@ -121,12 +121,12 @@ def propagate(
     -------
     position, velocity : ndarray, shape (…, 3)
         The axes of ``t``, then the leading axes of the orbits, then 3. At ``t = 0`` they are the given bits. A body
-        that falls straight into the centre comes back on its way; at the instant of the collision both are 0.
+        that falls straight into the center comes back on its way; at the instant of the collision both are 0.
 
     Raises
     ------
     InvalidInput
-        For a wrong shape, NaN or infinity, or a position at the centre.
+        For a wrong shape, NaN or infinity, or a position at the center.
 
     Notes
     -----

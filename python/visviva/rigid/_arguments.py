@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-def rows(name: str, value: ArrayLike, axes: tuple[int, ...]) -> NDArray[np.float64]:
+def checked_rows(name: str, value: ArrayLike, axes: tuple[int, ...]) -> NDArray[np.float64]:
     """Check an array whose last axes have these lengths; of a SciPy rotation, take the quaternions."""
     if axes == (4,) and hasattr(value, "as_quat"):
         value = value.as_quat()
@@ -27,7 +27,7 @@ def rows(name: str, value: ArrayLike, axes: tuple[int, ...]) -> NDArray[np.float
     return array
 
 
-def mapped(
+def map_rows(
     function: Callable[..., NDArray[np.float64]],
     result: tuple[int, ...],
     *arguments: tuple[str, ArrayLike, tuple[int, ...]],
@@ -46,7 +46,7 @@ def mapped(
     lead: tuple[int, ...] = ()
     checked: list[NDArray[np.float64]] = []
     for name, value, axes in arguments:
-        array = rows(name, value, axes)
+        array = checked_rows(name, value, axes)
         own = array.shape[: array.ndim - len(axes)]
         try:
             shape = np.broadcast_shapes(lead, own)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from visviva._html import brief_tuple
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.rigid._polhode import polhode
@@ -43,6 +44,9 @@ class ConeAngles(NamedTuple):
     body: float
     space: float
     axis: float
+
+    def __repr__(self) -> str:
+        return brief_tuple(self)
 
 
 @known_keywords

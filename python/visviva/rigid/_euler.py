@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from visviva import _core
 from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import mapped
+from visviva.rigid._arguments import map_rows
 
 if TYPE_CHECKING:
     import numpy as np
@@ -57,7 +57,7 @@ def euler_angles(quaternion: ArrayLike, convention: EulerConvention = "ZXZ") -> 
     array([0.3, 0. , 0. ])
     """
     function = partial(_core.rotation_euler, _name(convention), to_angles=True)
-    return mapped(function, (3,), ("quaternion", quaternion, (4,)))
+    return map_rows(function, (3,), ("quaternion", quaternion, (4,)))
 
 
 @known_keywords
@@ -94,7 +94,7 @@ def quaternion_from_euler(angles: ArrayLike, convention: EulerConvention = "ZXZ"
     array([0.44560368, 0.27320194, 0.12739967, 0.84295159])
     """
     function = partial(_core.rotation_euler, _name(convention), to_angles=False)
-    return mapped(function, (4,), ("angles", angles, (3,)))
+    return map_rows(function, (4,), ("angles", angles, (3,)))
 
 
 @known_keywords
@@ -139,7 +139,7 @@ def angular_velocity_from_euler(
     array([-0.28832795,  0.16837323,  1.63607884])
     """
     function = partial(_core.rotation_rates, _name(convention), in_body=_in_body(frame), to_rates=False)
-    return mapped(function, (3,), ("angles", angles, (3,)), ("rates", rates, (3,)))
+    return map_rows(function, (3,), ("angles", angles, (3,)), ("rates", rates, (3,)))
 
 
 @known_keywords
@@ -185,7 +185,7 @@ def euler_rates(
     array([ 0.3, -0.2,  1.5])
     """
     function = partial(_core.rotation_rates, _name(convention), in_body=_in_body(frame), to_rates=True)
-    return mapped(function, (3,), ("angles", angles, (3,)), ("angular_velocity", angular_velocity, (3,)))
+    return map_rows(function, (3,), ("angles", angles, (3,)), ("angular_velocity", angular_velocity, (3,)))
 
 
 def _name(convention: object) -> str:

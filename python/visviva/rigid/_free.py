@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Record
 from visviva._keywords import known_keywords
-from visviva.rigid._arguments import rows
+from visviva.rigid._arguments import checked_rows
 from visviva.rigid._rotation import Rotation
 
 if TYPE_CHECKING:
@@ -216,7 +216,7 @@ def free_rotation(
     """
     checked = float_array("moments", moments, (3,))
     spin = float_array("angular_velocity", angular_velocity, (3,))
-    start = np.array([0.0, 0.0, 0.0, 1.0]) if orientation is None else rows("orientation", orientation, (4,))
+    start = np.array([0.0, 0.0, 0.0, 1.0]) if orientation is None else checked_rows("orientation", orientation, (4,))
     times = float_array("t", t, None)
     found = _core.free_rotation(checked, spin, float_array("orientation", start, (4,)), times.ravel())
     columns = [column.reshape((*times.shape, column.shape[-1])) for column in found]

@@ -8,9 +8,10 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, mass_array, positive
+from visviva._html import brief_tuple
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import rows
+from visviva.rigid._arguments import checked_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -47,6 +48,9 @@ class PrincipalAxes(NamedTuple):
 
     moments: NDArray[np.float64]
     axes: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return brief_tuple(self)
 
 
 @known_keywords
@@ -230,5 +234,5 @@ def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float6
            [0., 1., 0.],
            [0., 0., 2.]])
     """
-    turn = float_array("quaternion", rows("quaternion", quaternion, (4,)), (4,))
+    turn = float_array("quaternion", checked_rows("quaternion", quaternion, (4,)), (4,))
     return _core.tensor_rotated(symmetric(tensor), turn) + 0.0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from visviva._html import Record
+from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 
 __all__ = ["Nutation", "SteadyPrecession"]
@@ -41,6 +41,9 @@ class SteadyPrecession(NamedTuple):
 
     slow: float
     fast: float
+
+    def __repr__(self) -> str:
+        return brief_tuple(self)
 
 
 @known_keywords

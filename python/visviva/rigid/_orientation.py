@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._keywords import known_keywords
 from visviva._packages import needed
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import mapped, rows
+from visviva.rigid._arguments import checked_rows, map_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -50,7 +50,7 @@ def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     >>> vv.rigid.quaternion_product(half_turn, half_turn)
     array([ 0.,  0.,  0., -1.])
     """
-    return mapped(_core.rotation_product, (4,), ("a", a, (4,)), ("b", b, (4,)))
+    return map_rows(_core.rotation_product, (4,), ("a", a, (4,)), ("b", b, (4,)))
 
 
 @known_keywords
@@ -127,7 +127,7 @@ def rotate_back(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]
 
 def _rotated(quaternion: ArrayLike, vector: ArrayLike, back: bool) -> NDArray[np.float64]:
     function = partial(_core.rotated, back=back)
-    return mapped(function, (3,), ("quaternion", quaternion, (4,)), ("vector", vector, (3,)))
+    return map_rows(function, (3,), ("quaternion", quaternion, (4,)), ("vector", vector, (3,)))
 
 
 @known_keywords
@@ -299,7 +299,7 @@ def from_scipy(rotation: Rotation) -> NDArray[np.float64]:
     """
     if not hasattr(rotation, "as_quat"):
         raise InvalidInput("rotation", f"expected a scipy.spatial.transform.Rotation, got {type(rotation).__name__}")
-    return np.asarray(rows("rotation", rotation, (4,)))
+    return np.asarray(checked_rows("rotation", rotation, (4,)))
 
 
 @known_keywords
@@ -338,4 +338,4 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
 
 def _form(name: str, result: tuple[int, ...], argument: tuple[str, ArrayLike, tuple[int, ...]]) -> NDArray[np.float64]:
     """Give another form of each rotation, by its name in the core."""
-    return mapped(partial(_core.rotation_form, name), result, argument)
+    return map_rows(partial(_core.rotation_form, name), result, argument)

@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import mapped
+from visviva.rigid._arguments import map_rows
 from visviva.rigid._orientation import quaternion_from_rotation_vector, quaternion_product, rotation_vector
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def slerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike) -> NDArray[np.f
 
 def _unit(name: str, given: ArrayLike) -> NDArray[np.float64]:
     try:
-        return mapped(partial(_core.rotation_form, "normalized"), (4,), (name, given, (4,)))
+        return map_rows(partial(_core.rotation_form, "normalized"), (4,), (name, given, (4,)))
     except InvalidInput as error:
         raise InvalidInput(name, error.message) from None
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-def of_kind(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
+def solid_of_kind(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
     """Check the arguments of a body that the core knows by name, and give it."""
     hollow = is_shell(shell)
     weight = positive("mass", mass, "mass")
@@ -65,7 +65,7 @@ def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> Ma
     >>> vv.rigid.box(12.0, 1.0, 2.0, 3.0).principal_axes().moments
     array([ 5., 10., 13.])
     """
-    return of_kind("box", mass, shell=shell, a=a, b=b, c=c)
+    return solid_of_kind("box", mass, shell=shell, a=a, b=b, c=c)
 
 
 @known_keywords
@@ -101,7 +101,7 @@ def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProp
     >>> vv.rigid.sphere(5.0, 1.0).tensor[0, 0], vv.rigid.sphere(3.0, 1.0, inner_radius=1.0).tensor[0, 0]
     (np.float64(2.0), np.float64(2.0))
     """
-    return of_kind("sphere", mass, radius=radius, inner_radius=inner_radius)
+    return solid_of_kind("sphere", mass, radius=radius, inner_radius=inner_radius)
 
 
 @known_keywords
@@ -137,7 +137,7 @@ def hemisphere(mass: float, radius: float, *, shell: bool = False) -> MassProper
     >>> vv.rigid.hemisphere(5.0, 1.0).tensor.diagonal()
     array([1.296875, 1.296875, 2.      ])
     """
-    return of_kind("hemisphere", mass, shell=shell, radius=radius)
+    return solid_of_kind("hemisphere", mass, shell=shell, radius=radius)
 
 
 @known_keywords
@@ -181,7 +181,7 @@ def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False)
     >>> vv.rigid.ellipsoid(3.0, 1.0, 1.0, 1.0, shell=True).tensor.diagonal().round(12)
     array([2., 2., 2.])
     """
-    return of_kind("ellipsoid", mass, shell=shell, a=a, b=b, c=c)
+    return solid_of_kind("ellipsoid", mass, shell=shell, a=a, b=b, c=c)
 
 
 @known_keywords
@@ -224,7 +224,7 @@ def cylinder(
     inner = {"inner_radius": number("inner_radius", inner_radius)}
     if is_shell(shell) and inner["inner_radius"] != 0.0:
         raise InvalidInput("inner_radius", f"expected 0 of a shell, got {inner_radius!r}")
-    return of_kind("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
+    return solid_of_kind("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
 
 
 @known_keywords
@@ -260,7 +260,7 @@ def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> M
     >>> vv.rigid.cone(80.0, 1.0, 2.0).tensor.diagonal()
     array([24., 24., 24.])
     """
-    return of_kind("cone", mass, shell=shell, radius=radius, height=height)
+    return solid_of_kind("cone", mass, shell=shell, radius=radius, height=height)
 
 
 @known_keywords
@@ -296,7 +296,7 @@ def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -
     >>> vv.rigid.capsule(10.0, 1.0, 2.0).tensor.diagonal().round(12)
     array([12.1, 12.1,  4.6])
     """
-    return of_kind("capsule", mass, shell=shell, radius=radius, height=height)
+    return solid_of_kind("capsule", mass, shell=shell, radius=radius, height=height)
 
 
 @known_keywords
@@ -333,7 +333,7 @@ def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool 
     >>> vv.rigid.torus(8.0, 2.0, 1.0).tensor.diagonal()
     array([21., 21., 38.])
     """
-    return of_kind("torus", mass, shell=shell, major_radius=major_radius, minor_radius=minor_radius)
+    return solid_of_kind("torus", mass, shell=shell, major_radius=major_radius, minor_radius=minor_radius)
 
 
 @known_keywords

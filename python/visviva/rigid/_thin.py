@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from visviva._keywords import known_keywords
-from visviva.rigid._solids import of_kind
+from visviva.rigid._solids import solid_of_kind
 
 if TYPE_CHECKING:
     from visviva.rigid._mass import MassProperties
@@ -42,7 +42,7 @@ def rod(mass: float, length: float) -> MassProperties:
     >>> vv.rigid.rod(12.0, 1.0).tensor.diagonal()
     array([1., 1., 0.])
     """
-    return of_kind("rod", mass, length=length)
+    return solid_of_kind("rod", mass, length=length)
 
 
 @known_keywords
@@ -79,7 +79,7 @@ def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProper
     >>> vv.rigid.disc(4.0, 1.0).tensor.diagonal()
     array([1., 1., 2.])
     """
-    return of_kind("disc", mass, radius=radius, inner_radius=inner_radius)
+    return solid_of_kind("disc", mass, radius=radius, inner_radius=inner_radius)
 
 
 @known_keywords
@@ -114,4 +114,4 @@ def plate(mass: float, a: float, b: float) -> MassProperties:
     >>> vv.rigid.plate(12.0, 1.0, 2.0).tensor.diagonal()
     array([4., 1., 5.])
     """
-    return of_kind("plate", mass, a=a, b=b)
+    return solid_of_kind("plate", mass, a=a, b=b)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from visviva._html import brief_tuple
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -43,6 +44,9 @@ class TopMomenta(NamedTuple):
 
     p_phi: float
     p_psi: float
+
+    def __repr__(self) -> str:
+        return brief_tuple(self)
 
 
 def weight(top: HeavyTop) -> float:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from visviva import _core
-from visviva._html import briefly
+from visviva._html import brief_tuple
 from visviva._keywords import known_keywords
-from visviva.rigid._arguments import mapped
+from visviva.rigid._arguments import map_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,8 +57,7 @@ class ScrewAxis(NamedTuple):
     pitch: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        told = (f"{name}={briefly(each)}" for name, each in zip(self._fields, self, strict=True))
-        return f"ScrewAxis({', '.join(told)})"
+        return brief_tuple(self)
 
 
 @known_keywords
@@ -108,7 +107,7 @@ def velocity_at(
            [6., 0., 0.]])
     """
     motion = (("velocity", velocity, (3,)), ("angular_velocity", angular_velocity, (3,)), ("about", about, (3,)))
-    return mapped(_of_joined(_core.rigid_velocity), (3,), ("point", point, (3,)), *motion)
+    return map_rows(_of_joined(_core.rigid_velocity), (3,), ("point", point, (3,)), *motion)
 
 
 def _of_joined(function: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Callable[..., NDArray[np.float64]]:
@@ -168,7 +167,7 @@ def screw_axis(velocity: ArrayLike, angular_velocity: ArrayLike, about: ArrayLik
     (array([ 0.,  0., -1.]), array([0., 1., 0.]), np.float64(0.0))
     """
     motion = (("velocity", velocity, (3,)), ("angular_velocity", angular_velocity, (3,)), ("about", about, (3,)))
-    found = mapped(_of_joined(_core.rigid_screw), (9,), *motion)
+    found = map_rows(_of_joined(_core.rigid_screw), (9,), *motion)
     # Of a single body numbers, and no arrays without axes.
     rate, speed, pitch = (found[..., at][()] for at in (6, 7, 8))
     return ScrewAxis(found[..., :3], found[..., 3:6], rate, speed, pitch)

@@ -41,7 +41,7 @@ def angles(name: str, values: object, limit: float = np.pi) -> NDArray[np.float6
     return array
 
 
-def flat(arguments: dict[str, NDArray[np.float64]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:
+def flat_broadcast(arguments: dict[str, NDArray[np.float64]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:
     """Numbers that broadcast, as flat arrays of one or of as many as the result has, and the result's shape."""
     given = Together(arguments, {})
     return list(given.numbers.values()), given.shape
@@ -87,7 +87,7 @@ def kinematic(
         # Recoils of elastic collisions are the same of any masses.
         raise InvalidInput("mass_ratio", "expected m1/m2, got None")
     given = encounter(mass_ratio, q_value, beam_energy, products)
-    (angle, ratio, released, energy, third, fourth), shape = flat({name: values} | given)
+    (angle, ratio, released, energy, third, fourth), shape = flat_broadcast({name: values} | given)
     if 0 in shape:
         return np.empty(shape)
     found = _core.kinematics(function, angle, ratio, released, energy, (third, fourth))

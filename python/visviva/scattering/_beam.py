@@ -148,10 +148,10 @@ class Spread(Record):
 
 
 def _spread(shape: str, width: float) -> Spread:
-    made = object.__new__(Spread)
-    object.__setattr__(made, "shape", shape)
-    object.__setattr__(made, "width", width)
-    return made
+    spread = object.__new__(Spread)
+    object.__setattr__(spread, "shape", shape)
+    object.__setattr__(spread, "width", width)
+    return spread
 
 
 def as_spread(name: str, given: object) -> Spread | None:
@@ -164,7 +164,7 @@ def as_spread(name: str, given: object) -> Spread | None:
 @known_keywords
 @dataclass(frozen=True, repr=False)
 class Beam(Record):
-    """A beam on a disc around one centre: what results must have in common to be added.
+    """A beam on a disc around one center: what results must have in common to be added.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
 
@@ -179,7 +179,7 @@ class Beam(Record):
     b_max : float
         Radius of the disc of impact parameters.
     smallest_angle : float
-        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where
+        The deflection at the edge of the disc, in the center-of-mass frame, or a greater one beyond it: where
         deflections fall with the impact parameter, no event is scattered by less.
     tables : tuple of int
         The hash of the event table of each energy, from which angles are taken; of a spread of energies, of those

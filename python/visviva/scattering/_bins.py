@@ -38,7 +38,7 @@ class Bins(Record):
     Attributes
     ----------
     spacing : {"linear", "logarithmic", "solid_angle"}
-        What neighbouring bins have in common: width, ratio of the ends, or solid angle.
+        What neighboring bins have in common: width, ratio of the ends, or solid angle.
     n : int
         How many, 1 to 65536; edges have shape (n + 1,).
     low, high : float or None

@@ -23,7 +23,7 @@ __all__ = ["Channel", "as_channels"]
 class Channel(Record):
     """A reaction that events of a Monte Carlo go through with some probability.
 
-    The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the centre-of-mass frame
+    The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the center-of-mass frame
     that are left: ½μ'w'² = ½μw² + Q.
 
     Units: energies in those of the beam, masses in those of its masses; probabilities are without dimension.

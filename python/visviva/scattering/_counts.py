@@ -27,7 +27,7 @@ _SUMMED = 500
 _EXPECTED = 1.0
 
 _AXES = {
-    "cm_angle": ("angle in the centre-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
+    "cm_angle": ("angle in the center-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
     "lab_angle": ("laboratory angle [degrees]", "dσ/dΩ₁ [area per steradian]"),
     "recoil_angle": ("recoil angle [degrees]", "dσ/dΩ₂ [area per steradian]"),
     "energy": ("energy afterwards", "dσ/dE₁"),
@@ -143,15 +143,15 @@ def _pulls(tally: Tally, edges: NDArray[np.float64], expected: NDArray[np.float6
         # Of what is expected, binomial: that of a count of none would be none.
         variance = expected * (1.0 - expected / tally.n_events)
         # Where one event more or less is all there is, its distance is no number of standard deviations.
-        there = (variance > 0.0) & (expected >= _EXPECTED)
+        plotted = (variance > 0.0) & (expected >= _EXPECTED)
     else:
         variance = tally.variances()
-        there = variance > 0.0
+        plotted = variance > 0.0
     middle = 0.5 * (edges[1:] + edges[:-1])
     if axes.get_xscale() == "log":
         middle = np.sqrt(edges[1:] * edges[:-1])
-    pulls = (tally.values() - expected)[there] / np.sqrt(variance[there])
-    axes.plot(middle[there], pulls, ".", markersize=4, color=BLUE)
+    pulls = (tally.values() - expected)[plotted] / np.sqrt(variance[plotted])
+    axes.plot(middle[plotted], pulls, ".", markersize=4, color=BLUE)
     mark_none(axes, 0.0, 1.0)
     reach = 1.15 * max(3.0, float(np.abs(pulls).max()) if pulls.size else 0.0)
     axes.set(ylim=(-reach, reach), ylabel="(n − theory) / σ")

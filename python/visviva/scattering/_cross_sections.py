@@ -52,7 +52,7 @@ def cross_section(
     angle : array_like
         In [0, π]; in [0, π/2] for recoils.
     frame : {"cm", "lab", "recoil"}
-        What the angle is: of the centre-of-mass frame, of the projectile in the laboratory, or of the target there.
+        What the angle is: of the center-of-mass frame, of the projectile in the laboratory, or of the target there.
     mass_ratio : float, optional
         m₁/m₂; needed for ``"lab"``.
 

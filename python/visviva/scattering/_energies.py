@@ -9,7 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
-from visviva.scattering._arguments import angles, encounter, flat, kinematic
+from visviva.scattering._arguments import angles, encounter, flat_broadcast, kinematic
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,7 +31,7 @@ def energy_transfer(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -83,7 +83,7 @@ def energy_kept(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -319,7 +319,7 @@ def two_branch_energy(
 ) -> NDArray[np.float64]:
     """Beam energy at which a laboratory angle begins, or ceases, to have two energies.
 
-    There the projectile is as fast in the centre-of-mass frame as the frame itself. A light projectile that takes up
+    There the projectile is as fast in the center-of-mass frame as the frame itself. A light projectile that takes up
     energy has two branches from the threshold to here; a heavy one that releases energy has them beyond.
 
     Units: the energy is in those of `q_value`; ratios are without dimension.
@@ -361,7 +361,7 @@ def _special(name: str, mass_ratio: object, q_value: object, products: object) -
         raise InvalidInput("mass_ratio", "expected m1/m2, got None")
     given = encounter(mass_ratio, q_value, 1.0, products)
     del given["beam_energy"]
-    (ratio, released, third, fourth), shape = flat(given)
+    (ratio, released, third, fourth), shape = flat_broadcast(given)
     if 0 in shape:
         return np.empty(shape)
     return _core.special_energy(name, ratio, released, (third, fourth)).reshape(shape)[()]

@@ -16,7 +16,7 @@ from visviva._progress import callback
 from visviva.errors import Interrupted
 from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam
-from visviva.scattering._spread import which
+from visviva.scattering._spread import event_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -101,7 +101,7 @@ def scattering_events(
     """
     checked_potential("potential", potential)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
-    first, count, key = which(first_event, n_events, seed)
+    first, count, key = event_range(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
     with callback(progress, "events") as report:

@@ -46,9 +46,14 @@ class ExportedTally:
         """What is told beside the bins."""
 
     def to_hist(self) -> Hist[Storage]:
-        """As a ``hist.Hist`` with an axis for each quantity, what is below and above too.
+        """The counts as a ``hist.Hist`` with an axis for each quantity, with underflow and overflow.
 
-        With `importance` it is of ``Weight`` storage, of variance Σ w² n.
+        With `importance` its storage is ``Weight``, with the variances Σ w² n.
+
+        Returns
+        -------
+        hist.Hist
+            Of one axis, or two; counts without dimension.
 
         Raises
         ------

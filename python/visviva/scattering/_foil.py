@@ -15,7 +15,7 @@ from visviva.errors import InvalidInput
 from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, potential_of, screened
 from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult
-from visviva.scattering._spread import which
+from visviva.scattering._spread import event_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -99,11 +99,11 @@ class Foil(Record):
         stopping: Stopping | tuple[ArrayLike, ArrayLike] = "joined",
         minimum_angle: float = 1e-4,
     ) -> None:
-        made = material_of(material)
+        checked_material = material_of(material)
         given = {
-            "material": made,
+            "material": checked_material,
             "thickness": positive("thickness", thickness),
-            "potential": potential_of(potential, len(made.atomic_number)),
+            "potential": potential_of(potential, len(checked_material.atomic_number)),
             "stopping": stopping if isinstance(stopping, str) else losses_of(stopping),
             "minimum_angle": number("minimum_angle", minimum_angle),
         }
@@ -113,19 +113,19 @@ class Foil(Record):
 
     def _described(self, ion: Ion) -> dict[str, Any]:
         """What the core is told."""
-        made = self.material
+        material = self.material
         if isinstance(self.potential, str):
-            potentials = [screened(self.potential, ion.atomic_number, other) for other in made.atomic_number]
+            potentials = [screened(self.potential, ion.atomic_number, other) for other in material.atomic_number]
         else:
             potentials = list(self.potential)
-        excitations = made.mean_excitation_energy or (np.nan,) * len(potentials)
-        columns = zip(made.atomic_number, made.mass, made.fraction, excitations, potentials, strict=True)
+        excitations = material.mean_excitation_energy or (np.nan,) * len(potentials)
+        columns = zip(material.atomic_number, material.mass, material.fraction, excitations, potentials, strict=True)
         named = ("atomic_number", "mass", "fraction", "excitation", "potential")
         return {
             "elements": [
                 dict(zip(named, (*numbers, potential._to_core()), strict=True)) for *numbers, potential in columns
             ],
-            "density": made.density,
+            "density": material.density,
             "thickness": self.thickness * 1e4,
             "stopping": self.stopping
             if isinstance(self.stopping, str)
@@ -268,7 +268,7 @@ class Foil(Record):
         ('transmitted', True)
         """
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
-        first, _, key = which(event, 1, seed)
+        first, _, key = event_range(event, 1, seed)
         numbers, directions, elements, end = _core.foil_history(
             foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
         )

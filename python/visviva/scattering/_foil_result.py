@@ -15,7 +15,7 @@ from visviva.errors import InvalidInput
 from visviva.scattering._foil_tally import FoilTally, Fraction, summed
 from visviva.scattering._goes_on import GoesOn
 from visviva.scattering._of_events import Counted
-from visviva.scattering._spread import counted, which
+from visviva.scattering._spread import counted, event_range
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Bombardment(Record):
             "run": self._to_core(),
             "tallies": [axis for (axis,) in asked],
         }
-        events = which(first_event, n_events, seed, MOST_IONS)
+        events = event_range(first_event, n_events, seed, MOST_IONS)
         return counted("foil_run", request, events, threads, progress, executor, self._made, "ions")
 
     def _made(self, came: tuple[Any, ...], events: tuple[tuple[int, int, int], ...]) -> FoilResult:
@@ -197,6 +197,11 @@ class FoilResult(GoesOn, Counted, Shown, Mapping["FoilTallyName", FoilTally]):  
         Parameters
         ----------
         fate : {"transmitted", "reflected", "stopped"}
+
+        Returns
+        -------
+        Fraction
+            Of numbers: the part and its standard error, from 0 to 1.
 
         Raises
         ------
@@ -298,6 +303,6 @@ class FoilResult(GoesOn, Counted, Shown, Mapping["FoilTallyName", FoilTally]):  
         return self.bombardment._run(asked, n_events, seed, first, threads, progress, executor)
 
     def _kept(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        from visviva.scattering._foil_saved import kept
+        from visviva.scattering._foil_saved import counts_for_file
 
-        return kept(self)
+        return counts_for_file(self)

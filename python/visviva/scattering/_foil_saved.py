@@ -25,7 +25,7 @@ from visviva.scattering._of_events import checked_events
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["VERSION", "kept", "restored"]
+__all__ = ["VERSION", "counts_for_file", "run_from_file"]
 
 VERSION = 1
 
@@ -73,7 +73,7 @@ _COUNTED = {
 }
 
 
-def kept(result: FoilResult) -> tuple[dict[str, Any], dict[str, Any]]:
+def counts_for_file(result: FoilResult) -> tuple[dict[str, Any], dict[str, Any]]:
     """Header and arrays of a file that holds these counts."""
     hit = result.bombardment
     foil, potential = hit.foil, hit.foil.potential
@@ -98,7 +98,7 @@ def kept(result: FoilResult) -> tuple[dict[str, Any], dict[str, Any]]:
     return header, arrays
 
 
-def restored(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> FoilResult:
+def run_from_file(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> FoilResult:
     """The result of a file, of which everything is checked.
 
     Raises

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from visviva._html import Record
+from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
@@ -46,6 +46,9 @@ class Fraction(NamedTuple, Generic[_T]):
     """As a part of the events."""
     error: _T
     """One standard deviation."""
+
+    def __repr__(self: Fraction[Any]) -> str:
+        return brief_tuple(self)
 
 
 def summed(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) -> tuple[Any, Any]:
@@ -132,9 +135,12 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         return int(self.sums[-1, 0])
 
     def values(self) -> NDArray[np.float64]:
-        """How many ions each bin stands for: counts, or with a forced collision the sums of their weights.
+        """Number of ions in each bin: counts, or with a forced collision the sums of their weights.
 
-        Arrays of shape (B,), without dimension.
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
@@ -147,7 +153,12 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         return np.asarray(summed(self.sums[1:-1], self.units, self.n_events)[0])
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of these, shape (B,), without dimension: the number of events is fixed.
+        """Variances of `values`: the number of events is fixed.
+
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
@@ -159,7 +170,12 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         return np.asarray(summed(self.sums[1:-1], self.units, self.n_events)[1])
 
     def fraction(self) -> Fraction[NDArray[np.float64]]:
-        """As a part of all ions that came, without dimension, with its standard error: both of shape (bins,).
+        """The fraction of all incident ions that each bin holds, with its standard error.
+
+        Returns
+        -------
+        Fraction
+            Of arrays, shape (B,), without dimension: the part in each bin and its standard error.
 
         Examples
         --------

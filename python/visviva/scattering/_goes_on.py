@@ -119,6 +119,11 @@ class GoesOn:
         ----------
         path : path-like
 
+        Returns
+        -------
+        MonteCarlo or FoilResult
+            With the counts, the bins and the potential or the foil that were saved.
+
         Raises
         ------
         InvalidInput

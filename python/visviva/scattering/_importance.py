@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from visviva.scattering._beam import Beam
 
-__all__ = ["LargeAngles", "Strata", "resolved"]
+__all__ = ["LargeAngles", "Strata", "strata_of"]
 
 _MOST, _LEAST = 2**10, 1e-6
 
@@ -136,7 +136,7 @@ class LargeAngles(Record):
     Parameters
     ----------
     smallest_angle : float
-        From the beam, in the centre-of-mass frame: in radians, in (0, π).
+        From the beam, in the center-of-mass frame: in radians, in (0, π).
     fraction : float, optional
         The part of the events within, 1e-6 to 1 − 1e-6.
 
@@ -178,7 +178,7 @@ class LargeAngles(Record):
         object.__setattr__(self, "fraction", fraction)
 
 
-def resolved(given: object, beam: Beam) -> Strata | None:
+def strata_of(given: object, beam: Beam) -> Strata | None:
     """The strata of a beam."""
     if given is None or isinstance(given, Strata):
         return given

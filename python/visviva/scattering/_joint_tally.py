@@ -15,7 +15,7 @@ from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import ExportedTally, intervals
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added, read_only, same, variances, weighted, weighted_columns
+from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_columns, weighted_counts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,7 +88,10 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
 
-        Shape (B₁, B₂), without dimension.
+        Returns
+        -------
+        ndarray, shape (B₁, B₂)
+            Without dimension.
 
         Examples
         --------
@@ -102,7 +105,12 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the values, shape (B₁, B₂), without dimension: as `Tally.variances`.
+        """Variances of the values, as those of `Tally.variances`.
+
+        Returns
+        -------
+        ndarray, shape (B₁, B₂)
+            Without dimension.
 
         Examples
         --------
@@ -116,7 +124,7 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         return variances(self.values(), self._weighted(2), self.n_events)
 
     def _weighted(self, power: int) -> NDArray[np.float64]:
-        return weighted(self, power, self.flow)[1:-1, 1:-1]
+        return weighted_counts(self, power, self.flow)[1:-1, 1:-1]
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
@@ -206,5 +214,5 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
             flow=self.flow + other.flow,
             captured=self.captured + other.captured,
             events=self._merged_events(other),
-            by_stratum=added(self.by_stratum, other.by_stratum),
+            by_stratum=added_strata(self.by_stratum, other.by_stratum),
         )

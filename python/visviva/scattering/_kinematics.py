@@ -28,7 +28,7 @@ def lab_angle(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -83,7 +83,7 @@ def recoil_angle(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like, optional
         m₁/m₂. Of no consequence, and not needed, without Q and products.
     q_value : array_like, optional
@@ -135,7 +135,7 @@ def opening_angle(
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -181,16 +181,16 @@ def lab_jacobian(
     beam_energy: ArrayLike | None = None,
     products: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> NDArray[np.float64]:
-    """Solid angle of the centre-of-mass frame per solid angle of the projectile in the laboratory.
+    """Solid angle of the center-of-mass frame per solid angle of the projectile in the laboratory.
 
-    A cross section in the laboratory is the one of the centre-of-mass frame times this, summed over the branches.
+    A cross section in the laboratory is the one of the center-of-mass frame times this, summed over the branches.
 
     Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
 
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like
         m₁/m₂.
     q_value : array_like, optional
@@ -236,14 +236,14 @@ def recoil_jacobian(
     beam_energy: ArrayLike | None = None,
     products: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> NDArray[np.float64]:
-    """Solid angle of the centre-of-mass frame per solid angle of the target in the laboratory.
+    """Solid angle of the center-of-mass frame per solid angle of the target in the laboratory.
 
     Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
 
     Parameters
     ----------
     cm_angle : array_like
-        Scattering angles in the centre-of-mass frame, in [0, π].
+        Scattering angles in the center-of-mass frame, in [0, π].
     mass_ratio : array_like, optional
         m₁/m₂. Of no consequence, and not needed, without Q and products.
     q_value : array_like, optional
@@ -288,7 +288,7 @@ def cm_angle(
     beam_energy: ArrayLike | None = None,
     products: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Centre-of-mass angles that lead to a laboratory angle of the projectile.
+    """Center-of-mass angles that lead to a laboratory angle of the projectile.
 
     Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
 
@@ -344,7 +344,7 @@ def cm_angle_from_recoil(
     beam_energy: ArrayLike | None = None,
     products: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Centre-of-mass angles that lead to a laboratory angle of the target.
+    """Center-of-mass angles that lead to a laboratory angle of the target.
 
     Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
 

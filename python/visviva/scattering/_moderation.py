@@ -1,6 +1,6 @@
 """Averages over an elastic collision with a target at rest.
 
-The one idea: the scattering is isotropic in the centre-of-mass frame, so every energy transfer up to the greatest is as
+The one idea: the scattering is isotropic in the center-of-mass frame, so every energy transfer up to the greatest is as
 likely, and all averages hang on the ratio of the masses alone.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Moderation(Record):
-    """Averages over one elastic collision that is isotropic in the centre-of-mass frame, of the shape of the ratios.
+    """Averages over one elastic collision that is isotropic in the center-of-mass frame, of the shape of the ratios.
 
     Units: none: ratios and averages are without dimension.
 
@@ -60,7 +60,7 @@ class Moderation(Record):
 
 @known_keywords
 def moderation(*, mass_ratio: ArrayLike) -> Moderation:
-    """Averages over one elastic collision that is isotropic in the centre-of-mass frame.
+    """Averages over one elastic collision that is isotropic in the center-of-mass frame.
 
     Units: none: ratios and averages are without dimension.
 

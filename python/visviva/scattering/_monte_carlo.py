@@ -13,10 +13,10 @@ from visviva._keywords import known_keywords
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
-from visviva.scattering._importance import LargeAngles, Strata, resolved
+from visviva.scattering._importance import LargeAngles, Strata, strata_of
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._result import MonteCarlo
-from visviva.scattering._spread import counted, which
+from visviva.scattering._spread import counted, event_range
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def monte_carlo(
     importance: Strata | LargeAngles | None = None,
     channels: Channel | Iterable[Channel] | None = None,
 ) -> MonteCarlo:
-    """Scatter a beam off one centre and count every event.
+    """Scatter a beam off one center and count every event.
 
     The impact parameter is uniform over a disc: b² uniform in [0, b_max²). Event i takes its random numbers from
     Philox 4x32-10 with ``seed`` as the key and i as the counter, so the counts do not depend on threads, processor or
@@ -90,7 +90,7 @@ def monte_carlo(
     seed : int
         0 to 2⁶⁴ − 1.
     tally : str, iterable of str, or mapping
-        What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
+        What to count: ``"cm_angle"`` (size of the deflection in the center-of-mass frame), ``"lab_angle"``,
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
         ``{name: edges}``, where a whole number in place of edges is a number of equal bins, and `Bins` are bins by
         name: ``Bins.logarithmic(60, 1e-3)``, ``Bins.solid_angle(50)``. Angles are in radians.
@@ -119,7 +119,7 @@ def monte_carlo(
         planes. ``lab_angle`` and ``recoil_angle`` are then measured from the axis; ``cm_angle`` stays that of the
         collision.
     spot : float, optional
-        Standard deviation, in each of two dimensions, of the places at which projectiles come, about the centre and cut
+        Standard deviation, in each of two dimensions, of the places at which projectiles come, about the center and cut
         at ``b_max``; by default the disc is filled evenly (of another radius: that is ``b_max``). There is no cross
         section of a beam that does not fill the disc evenly.
     importance : Strata or LargeAngles, optional
@@ -190,10 +190,12 @@ def _beam(
         spot=None if spot is None else positive("spot", spot),
         channels=as_channels(channels),
     )
-    return replace(beam, importance=resolved(importance, beam))
+    return replace(beam, importance=strata_of(importance, beam))
 
 
-def again(result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any) -> MonteCarlo:
+def next_events(
+    result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any
+) -> MonteCarlo:
     """The next events of a result."""
     asked: list[Axes] = []
     for tally in result.tallies:
@@ -231,7 +233,7 @@ def _run(
         found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
         return MonteCarlo(found, events, tuple(_tally(column, found, events) for column in columns))
 
-    return counted("monte_carlo", request, which(first_event, n_events, seed), threads, progress, executor, made)
+    return counted("monte_carlo", request, event_range(first_event, n_events, seed), threads, progress, executor, made)
 
 
 def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:

@@ -53,7 +53,7 @@ class Counted:
             one, another = getattr(mine, name), getattr(theirs, name)
             if one != another:
                 raise InvalidInput("other", f"expected the same {name}, {one!r}, got {another!r}")
-        return _merged((*self.events, *other.events))
+        return joined_ranges((*self.events, *other.events))
 
 
 class OfEvents(Counted):
@@ -95,12 +95,12 @@ def checked_events(told: list[Any]) -> tuple[tuple[int, int, int], ...]:
         raise Damaged("the file has counts of no events")
     if not all(0 <= seed < 2**64 and 0 <= first < end <= 2**63 for seed, first, end in events):
         raise Damaged("the file has counts of events that there are not")
-    if events != _merged(events):
+    if events != joined_ranges(events):
         raise Damaged("the file has events that are not sorted")
     return events
 
 
-def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+def joined_ranges(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
     """Sort and join ranges of events; an event that is in two would count twice."""
     joined: list[tuple[int, int, int]] = []
     for seed, first, end in sorted(ranges):

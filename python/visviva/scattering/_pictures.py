@@ -181,7 +181,7 @@ def _cross_section(axes: Any, found: Deflection, energies: NDArray[np.float64]) 
         axes.set_yscale("log")
     elif drawn.size:
         axes.set_ylim(0.0, 1.2 * drawn.max())
-    axes.set(xlabel="angle in the centre-of-mass frame [degrees]", ylabel="dσ/dΩ [area per steradian]")
+    axes.set(xlabel="angle in the center-of-mass frame [degrees]", ylabel="dσ/dΩ [area per steradian]")
     # Numbers at every 30 degrees lie on each other where there is little room.
     wide = axes.get_position().width * axes.figure.get_size_inches()[0] > 3.0
     axes.set(xlim=(0.0, 180.0), xticks=range(0, 181, 30 if wide else 60))

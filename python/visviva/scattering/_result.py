@@ -15,7 +15,7 @@ from visviva.scattering._counts import theory_is_known
 from visviva.scattering._goes_on import GoesOn
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._saved import kept
+from visviva.scattering._saved import counts_for_file
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class MonteCarlo(GoesOn, OfEvents, Shown, Mapping["TallyName | tuple[TallyName, 
 
     @property
     def smallest_angle(self) -> float:
-        """The deflection at the edge of the disc, in the centre-of-mass frame, in radians: see `Beam`.
+        """The deflection at the edge of the disc, in the center-of-mass frame, in radians: see `Beam`.
 
         Examples
         --------
@@ -187,7 +187,7 @@ class MonteCarlo(GoesOn, OfEvents, Shown, Mapping["TallyName | tuple[TallyName, 
         ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
         ...     tally=["cm_angle", "recoil_energy"])
         >>> [axes.get_xlabel() for axes in result.plot().axes]
-        ['', 'angle in the centre-of-mass frame [degrees]', '', 'recoil energy']
+        ['', 'angle in the center-of-mass frame [degrees]', '', 'recoil energy']
         """
         from visviva._residuals import new_panels
 
@@ -201,9 +201,9 @@ class MonteCarlo(GoesOn, OfEvents, Shown, Mapping["TallyName | tuple[TallyName, 
         return figure
 
     def _again(self, n_events: int, threads: int | None, progress: Progress, executor: Executor | None) -> MonteCarlo:
-        from visviva.scattering._monte_carlo import again
+        from visviva.scattering._monte_carlo import next_events
 
-        return again(self, n_events, threads, progress, executor)
+        return next_events(self, n_events, threads, progress, executor)
 
     def _kept(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        return kept(self.beam, self.events, self.tallies)
+        return counts_for_file(self.beam, self.events, self.tallies)

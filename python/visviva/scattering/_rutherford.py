@@ -23,7 +23,7 @@ _FRAMES = ("cm", "lab", "recoil")
 
 @known_keywords
 def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: ArrayLike) -> NDArray[np.float64]:
-    """Deflection by a Coulomb centre, 2 atan(k / 2Eb).
+    """Deflection by a Coulomb center, 2 atan(k / 2Eb).
 
     Units: those of the potential, energies and lengths; angles in radians.
 
@@ -64,7 +64,7 @@ def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: A
 def rutherford_closest_approach(
     potential: Potential, *, energy: float, impact_parameter: ArrayLike
 ) -> NDArray[np.float64]:
-    """Distance of closest approach to a Coulomb centre, κ + √(κ² + b²) with κ = k/2E.
+    """Distance of closest approach to a Coulomb center, κ + √(κ² + b²) with κ = k/2E.
 
     Units: those of the potential, energies and lengths; angles in radians.
 
@@ -114,7 +114,7 @@ def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: A
     energy : float
         Of relative motion, ½μu².
     angle : array_like
-        Scattering angles |ψ| in the centre-of-mass frame, in [0, π].
+        Scattering angles |ψ| in the center-of-mass frame, in [0, π].
 
     Returns
     -------
@@ -162,7 +162,7 @@ def rutherford_cross_section(
     angle : array_like
         In [0, π]; in [0, π/2] for recoils.
     frame : {"cm", "lab", "recoil"}
-        What the angle is: of the centre-of-mass frame, of the projectile in the laboratory, or of the target there.
+        What the angle is: of the center-of-mass frame, of the projectile in the laboratory, or of the target there.
     mass_ratio : float, optional
         m₁/m₂; needed for ``"lab"``.
 

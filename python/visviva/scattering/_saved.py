@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from visviva.scattering._result import MonteCarlo
     from visviva.typing import TallyName
 
-__all__ = ["kept", "restored"]
+__all__ = ["counts_for_file", "run_from_file"]
 
 # Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels, version 5
 # their excitation functions.
 _VERSION = 5
 
 
-def kept(
+def counts_for_file(
     beam: Beam, events: tuple[tuple[int, int, int], ...], tallies: tuple[Tally | JointTally, ...]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Header and arrays of a file that holds these counts."""
@@ -99,7 +99,7 @@ def _spread(told: list[Any] | None) -> Spread | None:
     return {"gaussian": Spread.gaussian, "uniform": Spread.uniform}[told[0]](told[1])
 
 
-def restored(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> MonteCarlo:
+def run_from_file(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> MonteCarlo:
     """The result of such a file; counts that do not add up to its events are refused.
 
     Raises

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from visviva import _core
 from visviva._arrays import whole_number
-from visviva._executors import answers, checked_executor
+from visviva._executors import checked_executor, results_in_order
 from visviva._progress import callback
 from visviva.errors import InternalError, Interrupted
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from visviva.typing import Progress, Report
 
-__all__ = ["count_range", "counted", "which"]
+__all__ = ["count_range", "counted", "event_range"]
 
 # Ranges in all, and events at least that are worth a journey: an ion takes many collisions where the others take one.
 _MOST, _LEAST = 64, {"monte_carlo": 1 << 20, "foil_run": 1 << 14}
@@ -28,7 +28,7 @@ _MOST, _LEAST = 64, {"monte_carlo": 1 << 20, "foil_run": 1 << 14}
 _Result = TypeVar("_Result", bound=Any)
 
 
-def which(first_event: object, n_events: object, seed: object, most: int = 2**63) -> tuple[int, int, int]:
+def event_range(first_event: object, n_events: object, seed: object, most: int = 2**63) -> tuple[int, int, int]:
     """Which events: the first, how many, and the seed."""
     first = whole_number("first_event", first_event, 0, 2**63 - 1)
     count = whole_number("n_events", n_events, 1, min(most, 2**63 - first))
@@ -55,7 +55,7 @@ def counted(
     request : dict
         What it takes beside the events.
     events : tuple
-        As `which` gives them.
+        As `event_range` gives them.
     threads, progress, executor
         As of `monte_carlo`.
     made : callable
@@ -105,7 +105,7 @@ def _spread(
     bounds = [first + count * part // parts for part in range(parts + 1)]
     ranges = [(work, request, start, end - start) for start, end in pairwise(bounds)]
     home: list[Any] = []
-    with suppress(KeyboardInterrupt), closing(answers(executor, count_range, ranges)) as coming:
+    with suppress(KeyboardInterrupt), closing(results_in_order(executor, count_range, ranges)) as coming:
         for came, (*_, start, events) in zip(coming, ranges, strict=True):
             if came[3] != table:
                 raise InternalError(f"a worker built another table: {came[3]} instead of {table}")

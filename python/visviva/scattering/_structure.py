@@ -258,7 +258,7 @@ def impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -
     energy : float
         Of relative motion, positive.
     angle : array_like
-        Angles from the beam in the centre-of-mass frame, in [0, π].
+        Angles from the beam in the center-of-mass frame, in [0, π].
 
     Returns
     -------

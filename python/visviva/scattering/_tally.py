@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva import _core
-from visviva._html import Record
+from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._packages import needed
@@ -17,7 +17,7 @@ from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
 from visviva.scattering._exported import ExportedTally, intervals
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added, read_only, same, variances, weighted, weighted_columns
+from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_columns, weighted_counts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,6 +53,9 @@ class CrossSection(NamedTuple):
     """Area per steradian for angles, else area per unit of the quantity."""
     error: NDArray[np.float64]
     """One standard deviation of the count, as an area likewise."""
+
+    def __repr__(self) -> str:
+        return brief_tuple(self)
 
 
 @known_keywords
@@ -129,7 +132,10 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
 
-        Shape (B,), without dimension.
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
@@ -140,13 +146,18 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
         >>> float(run["cm_angle"].values().sum())
         1000.0
         """
-        return weighted(self, 1, self.counts, (slice(1, -2),))
+        return weighted_counts(self, 1, self.counts, (slice(1, -2),))
 
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, n·(1 − n/N), binomial: the number N of events is fixed.
 
-        Shape (B,), without dimension. With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all
+        With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all
         weights are 1.
+
+        Returns
+        -------
+        ndarray, shape (B,)
+            Without dimension.
 
         Examples
         --------
@@ -158,7 +169,7 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
         >>> bool(np.allclose(run["cm_angle"].variances(), n * (1.0 - n / 1000.0)))
         True
         """
-        return variances(self.values(), weighted(self, 2, self.counts, (slice(1, -2),)), self.n_events)
+        return variances(self.values(), weighted_counts(self, 2, self.counts, (slice(1, -2),)), self.n_events)
 
     def poisson_interval(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The exact central 68.27 % intervals of the means that counts come from.
@@ -369,5 +380,5 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
             overflow=self.overflow + other.overflow,
             captured=self.captured + other.captured,
             events=self._merged_events(other),
-            by_stratum=added(self.by_stratum, other.by_stratum),
+            by_stratum=added_strata(self.by_stratum, other.by_stratum),
         )

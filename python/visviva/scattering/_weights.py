@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from visviva.scattering._joint_tally import JointTally
     from visviva.scattering._tally import Tally
 
-__all__ = ["added", "read_only", "same", "to_hist", "variances", "weighted", "weighted_columns"]
+__all__ = ["added_strata", "read_only", "same", "to_hist", "variances", "weighted_columns", "weighted_counts"]
 
 
-def weighted(
+def weighted_counts(
     tally: Tally | JointTally, power: int, counts: NDArray[np.uint64], part: tuple[slice, ...] = (slice(0, -1),)
 ) -> NDArray[np.float64]:
     """Σ w n over the strata, or Σ w² n of power 2, of a part of their slots; without strata the counts."""
@@ -60,11 +60,11 @@ def to_hist(
     if tally.by_stratum is None:
         view[...] = flow
     else:
-        view.value, view.variance = weighted(tally, 1, flow), weighted(tally, 2, flow)
+        view.value, view.variance = weighted_counts(tally, 1, flow), weighted_counts(tally, 2, flow)
     return filled
 
 
-def added(mine: NDArray[np.uint64] | None, other: NDArray[np.uint64] | None) -> NDArray[np.uint64] | None:
+def added_strata(mine: NDArray[np.uint64] | None, other: NDArray[np.uint64] | None) -> NDArray[np.uint64] | None:
     """The counts of the strata of both."""
     return None if mine is None or other is None else mine + other
 

@@ -87,8 +87,8 @@ def line(verdict: Verdict) -> str:
     """
     position, energy = verdict.position_error, verdict.energy_error
     errors = [f"{what} {error:.1e}" for what, error in (("position", position), ("energy", energy)) if error == error]
-    told = verdict.told.split("\n")[0]
-    return f"{verdict.method:<24}{verdict.word:<9}{', '.join(errors)}{'; ' if errors and told else ''}{told[:140]}"
+    note = verdict.told.split("\n")[0]
+    return f"{verdict.method:<24}{verdict.word:<9}{', '.join(errors)}{'; ' if errors and note else ''}{note[:140]}"
 
 
 @known_keywords

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from visviva.orbits._elements import Elements
 
-__all__ = ["in_a_line", "is_few", "told"]
+__all__ = ["elements_table", "in_a_line", "is_few"]
 
 #: Bodies that have a column each.
 _BODIES = 2
@@ -61,7 +61,7 @@ def is_few(found: Elements) -> bool:
     return times == 1 and 0 < np.size(found.mu) <= _FEW
 
 
-def told(found: Elements) -> Sheet:
+def elements_table(found: Elements) -> Sheet:
     """A row for each element, its values and its unit."""
     along, size = _along(found), int(np.size(found.mu))
     values = {name: np.asarray(getattr(found, name)) for name in type(found).__slots__}

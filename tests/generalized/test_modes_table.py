@@ -24,6 +24,7 @@ def test_frequencies_come_first_and_have_a_unit() -> None:
     assert header[:3] == ["angular", "frequency", "period"]
     assert "radians per unit of time" in told
     for row, frequency, mode in zip(rows(DOUBLE), DOUBLE.frequencies, DOUBLE.modes, strict=True):
+        # Eight printed digits, and six of the modes.
         assert float(row[1]) == pytest.approx(frequency, rel=1e-8)
         assert float(row[2]) == pytest.approx(2.0 * math.pi / frequency, rel=1e-8)
         assert [float(text) for text in row[3].strip("()").split(",")] == pytest.approx(list(mode), rel=1e-5)

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
     from visviva.generalized._analysis import Linearization
 
-__all__ = ["told"]
+__all__ = ["modes_table"]
 
 #: Numbers of a shape that are shown; the rest are counted.
 _NUMBERS = 8
 
 
-def told(small: Linearization, axis: float) -> Sheet:
+def modes_table(small: Linearization, axis: float) -> Sheet:
     """A row for each motion; real parts below `axis` times the largest eigenvalue are those of round-off."""
     motions = _motions(small, axis)
     rates = [rate for _, rate in motions]

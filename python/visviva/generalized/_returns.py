@@ -1,0 +1,224 @@
+"""Period and action of a motion of one degree of freedom that comes back, for any Hamiltonian.
+
+The one idea: a closed curve comes back to a line across its flow, to round-off by Hénon's method; along it ∫ p q̇ dt is
+integrated over panels that are halved where it turns. M. Hénon, Physica D 5 (1982) 412.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva.errors import ConvergenceError, InvalidInput
+from visviva.generalized._calculus import Calculus
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["action_of_hamiltonian", "gauge_part", "period_of_hamiltonian"]
+
+_RTOL = 1e-15
+_OF_A_ROTATION = "the period of a rotation is period(turn=2π)"
+_OF_AN_OSCILLATION = "the period of an oscillation is period()"
+#: The start again: what is nearer to it than this part of how far the motion goes. Another line across is not.
+_SAME = 1e-6
+#: What a motion is followed for: so many doublings of the shortest time it tells at the start, and so many steps.
+_DOUBLINGS = 40
+_MOST_STEPS = 20_000
+#: Panels of a quadrature, at first, and how often each may be halved; by how much it may change then.
+_PANELS = 4
+_MOST_HALVINGS = 40
+_RESOLVED = 4e-15
+#: What the last digits of the start may change of a period, and what is the same after a turn, as in the core.
+_KNOWN = 1e-9
+_REPEATS = 1e-9
+#: Places of Gauss's quadrature in each panel.
+_GAUSS = 16
+_MOST_PANELS = 4096
+
+
+def period_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
+    """Give the period of a motion of one coordinate."""
+    lagrangian = _by_velocity(system)
+    return float(_by_return(system, turn)[0] if lagrangian is None else lagrangian._oscillation(turn)[2])
+
+
+def action_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
+    """Give its action variable."""
+    lagrangian = _by_velocity(system)
+    if lagrangian is not None:
+        return float(lagrangian._oscillation(turn)[3])
+    return _action(system, system._start(), _by_return(system, turn)[1], turn)
+
+
+def _by_velocity(system: Hamiltonian) -> Any:
+    """Give the Lagrangian of a Hamiltonian that is quadratic in the momentum, or None."""
+    if len(system.coordinates) != 1:
+        raise InvalidInput("H", f"a period is that of one coordinate; there are {list(system.coordinates)}")
+    try:
+        return system.lagrangian()
+    except InvalidInput:
+        return None
+
+
+def gauge_part(system: Lagrangian, turn: float) -> float:
+    """Give ∫ A dq / 2π along a rotation, of the part A(q) q̇ of L: of p dq, and of no period."""
+    c = Calculus(system)
+    linear = c.with_derivatives(c.adopted(*system._model.by_degree())[1:2])[0]
+    if c.is_zero(linear[0]):
+        return 0.0
+    start = system._start()
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    before, panels = np.inf, 1
+    while panels <= _MOST_PANELS:
+        places = start[0] + turn * (np.arange(panels)[:, None] + 0.5 + 0.5 * nodes).ravel() / panels
+        states = np.stack([places, np.zeros_like(places)], axis=1)
+        terms = c.values([linear[2]], np.full(len(places), system.t0), states, system._values)[:, 0]
+        mean = float((terms.reshape(panels, -1) @ weights).sum() / (2.0 * panels))
+        if abs(mean - before) <= 4.0 * _RESOLVED * float(np.abs(terms).max()):
+            return mean * abs(turn) / (2.0 * np.pi) * float(np.sign(start[1]))
+        before, panels = mean, 2 * panels
+    raise ConvergenceError(
+        f"the action is not resolved by {_MOST_PANELS} panels: what is linear in the velocity is rough"
+    )
+
+
+def _by_return(system: Hamiltonian, turn: float | None) -> tuple[float, float]:
+    """Give the period, and the time along which the coordinate goes the way of the turn."""
+    start = system._start()
+    rates = _rates(system, start)
+    if not rates.any():
+        raise InvalidInput("position", "the motion stands still: an equilibrium; see equilibria()")
+    if turn is not None:
+        if rates[0] == 0.0:
+            raise InvalidInput("turn", f"the motion turns back before it has gone so far; {_OF_AN_OSCILLATION}")
+        _refuse_unless_it_repeats(system, start, turn)
+    forward = 1.0 if turn is None else float(np.sign(turn * rates[0]))
+    period = _return_time(system, start, turn, forward)
+    try:
+        nearby = _return_time(system, start * (1.0 + 2.0**-50), turn, forward)
+    except InvalidInput:
+        nearby = np.inf
+    if abs(nearby - period) > _KNOWN * period:
+        raise InvalidInput("position", "the motion is on a separatrix, but for round-off, and has no period")
+    return period, period * forward
+
+
+def _rates(system: Hamiltonian, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    found: NDArray[np.float64] = system._model.rates(np.array([system.t0]), state[None, :], system._values[None, :])[0]
+    return found
+
+
+def _refuse_unless_it_repeats(system: Hamiltonian, start: NDArray[np.float64], turn: float) -> None:
+    places, momenta = np.meshgrid(start[0] + turn * np.arange(8) / 8, start[1] * np.array([1.0, 0.7, 1.3]))
+    here = np.stack([places.ravel(), momenta.ravel()], axis=1)
+    times, far = np.full(len(here), system.t0), np.array([turn, 0.0])
+    first, second = (system._model.rates(times, x, system._values[None, :]) for x in (here, here + far))
+    if (np.abs(first - second) > _REPEATS * np.abs(first).max(axis=0)).any():
+        raise InvalidInput("turn", f"the energy does not repeat after {turn:g}, so the motion has no period of that")
+
+
+def _return_time(system: Hamiltonian, start: NDArray[np.float64], turn: float | None, forward: float) -> float:
+    rates = _rates(system, start)
+    span = _shortest_time(system, start, rates)
+    far = np.zeros(2) if turn is None else np.array([turn, 0.0])
+    why = ""
+    for _ in range(_DOUBLINGS):
+        span *= 2.0
+        try:
+            times, states, sizes = _crossings(system, start, rates, far, forward * span)
+        except ConvergenceError as error:
+            why = f" ({error})"
+            break
+        same = (np.abs(states - start - far) <= _SAME * sizes).all(axis=1) & (np.abs(times) > 1e-3 * _SAME * span)
+        if same.any():
+            return float(abs(times[np.argmax(same)]))
+    if turn is None:
+        raise InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}")
+    raise InvalidInput("turn", f"the motion does not come to its start after a turn{why}; {_OF_AN_OSCILLATION}")
+
+
+def _crossings(
+    system: Hamiltonian, start: NDArray[np.float64], rates: NDArray[np.float64], far: NDArray[np.float64], span: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Give times since the start and states where the flow passes a line across it there, and how far it goes."""
+    end = system.t0 + span
+    # Each number by how fast it changes: of a motion that begins at a turning point the momentum alone does.
+    name = int(np.argmax(np.abs(rates) * np.array([abs(start[1]) or 1.0, abs(start[0]) or 1.0])))
+    if far.any():
+        name = 0
+    c = Calculus(system)
+    variable = c.adopted([("variable", [], float(name))], [0])[0]
+    section = c.with_derivatives([variable - float(start[name] + far[name])])[0][0]
+    asked, _ = system._asked(np.array([system.t0, end]), "gauss16", _RTOL, None, None)
+    asked["max_steps"] = _MOST_STEPS
+    function = {"nodes": c._nodes.all, "root": section._place, "energy": None, "function": None}
+    asked["events"] = [function | {"direction": float(np.sign(rates[name])), "last": None}]
+    result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
+    if result["failures"][0] is not None:
+        raise ConvergenceError(result["failures"][0], result["reached"][0])
+    times, states = result["found_t"] - system.t0, result["found_y"]
+    along = np.concatenate([states, result["y"], start[None, :]])
+    return times, states, np.ptp(along, axis=0) + np.abs(along).max(axis=0)
+
+
+def _shortest_time(system: Hamiltonian, start: NDArray[np.float64], rates: NDArray[np.float64]) -> float:
+    nodes, second = system._model.expressions("curvatures")
+    found = system._model.evaluate(nodes, second, np.array([system.t0]), start[None, :], system._values[None, :])[0]
+    frequency = np.sqrt(abs(found[0] * found[3] - found[1] * found[2]))
+    if np.isfinite(frequency) and frequency > 0.0:
+        return float(1.0 / frequency)
+    times = [abs(value / rate) for value, rate in zip(start, rates, strict=True) if value and rate]
+    return float(min(times)) if times else float(1.0 / np.abs(rates).max())
+
+
+def _action(system: Hamiltonian, start: NDArray[np.float64], span: float, turn: float | None) -> float:
+    """Give ∮ p dq / 2π: along the motion of a rotation, the area of an oscillation."""
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    center = None
+
+    def integrals(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of ∫ p q̇ dt between pairs of parts of the period (N, 2)."""
+        nonlocal center
+        middle, half = edges.mean(axis=1)[:, None], 0.5 * np.diff(edges, axis=1)
+        parts = (middle + half * nodes).ravel()
+        times = system.t0 + span * np.append(0.0, parts)
+        states = _states(system, start, times)
+        rates = system._model.rates(times[1:], states, system._values[None, :])
+        if center is None:
+            # ∮ dq = 0: what a large constant momentum would cancel is left out.
+            center = float(0.5 * (states[:, 1].max() + states[:, 1].min())) if turn is None else 0.0
+        found: NDArray[np.float64] = ((states[:, 1] - center) * rates[:, 0]).reshape(-1, _GAUSS) @ weights
+        return found * half[:, 0] * abs(span)
+
+    ends = np.linspace(0.0, 1.0, _PANELS + 1)
+    edges = np.stack([ends[:-1], ends[1:]], axis=1)
+    whole, done = integrals(edges), 0.0
+    size = float(np.abs(whole).sum())
+    for _ in range(_MOST_HALVINGS):
+        middle = edges.mean(axis=1)
+        halves = np.stack([np.stack([edges[:, 0], middle], axis=1), np.stack([middle, edges[:, 1]], axis=1)], axis=1)
+        parts = integrals(halves.reshape(-1, 2)).reshape(-1, 2)
+        rough = np.abs(parts.sum(axis=1) - whole) > _RESOLVED * size
+        done += float(parts[~rough].sum())
+        if not rough.any():
+            action = done / (2.0 * np.pi)
+            return abs(action) if turn is None else action
+        edges, whole = halves[rough].reshape(-1, 2), parts[rough].ravel()
+    raise ConvergenceError("the action is not resolved: the motion turns too sharply, or the function has kinks")
+
+
+def _states(system: Hamiltonian, start: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give states at times after the first, which is the start's; the times need no order."""
+    order = np.argsort(np.abs(times[1:] - times[0]))
+    asked, _ = system._asked(times[1:][order], "gauss16", _RTOL, None, None)
+    result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
+    if result["failures"][0] is not None:
+        raise ConvergenceError(result["failures"][0], result["reached"][0])
+    states = np.empty((len(order), 2))
+    states[order] = result["y"][-len(order) :]
+    return states

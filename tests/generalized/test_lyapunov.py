@@ -1,0 +1,62 @@
+"""Lyapunov's exponents where they are known, and what the norm has to do with them."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+
+def test_the_upright_double_pendulum() -> None:
+    """An unstable equilibrium: the real parts of its eigenvalues, ±√(2 ± √2) for equal rods and masses.
+
+    The frame turns to the directions that grow, once: some ln of a number of order 1 over the time.
+    """
+    upright = vv.systems.double_pendulum(
+        m1=1.0, m2=1.0, l1=1.0, l2=1.0, g=1.0, position=[np.pi, np.pi], velocity=[0.0, 0.0]
+    )
+    wanted = np.array([np.sqrt(2 + np.sqrt(2)), np.sqrt(2 - np.sqrt(2))])
+    wanted = np.concatenate([wanted, -wanted[::-1]])
+    for system in (upright, upright.hamiltonian()):
+        # The start is π but for its last digit, which grows as exp(1.85 t).
+        near, far = (system.lyapunov_exponents(t) for t in (6.0, 12.0))
+        assert np.abs(far - wanted).max() < 2.0 / 12.0
+        # Twice the time, twice the sum less what the turn was.
+        assert np.abs(2.0 * far - near - wanted).max() < 1e-4
+
+
+def test_hanging_there_are_none() -> None:
+    hanging = vv.systems.double_pendulum(position=[0.0, 0.0], velocity=[0.0, 0.0])
+    assert np.abs(hanging.lyapunov_exponents(400.0)).max() < 2.0 / 400.0
+
+
+def test_exponents_add_up_to_what_the_mass_matrix_changes() -> None:
+    """Liouville: dq dp is kept, and dq dq̇ is that over det M, m₂ l₁² l₂² (m₁ + m₂ sin²(θ₁ − θ₂)) here."""
+    double = vv.systems.double_pendulum(m1=1.0, m2=2.0, position=[2.0, 2.5], velocity=[0.0, 0.0])
+    t = 7.0
+    of_momenta, of_velocities = double.hamiltonian().lyapunov_exponents(t), double.lyapunov_exponents(t)
+    assert abs(of_momenta.sum()) < 1e-11
+    masses = [1.0 + 2.0 * np.sin(place[0] - place[1]) ** 2 for place in (double.position, double.run(t).position[-1])]
+    assert of_velocities.sum() == pytest.approx(np.log(masses[0] / masses[1]) / t, abs=1e-8)
+    assert abs(of_velocities.sum()) > 1e-3
+
+
+def test_velocities_and_momenta_tend_to_the_same() -> None:
+    """Half of the state by another matrix: exponents differ by a bounded logarithm over the time."""
+    double = vv.systems.double_pendulum(position=[0.6, 0.9], velocity=[0.0, 0.0])
+    for t in (50.0, 400.0):
+        apart = double.lyapunov_exponents(t)[0] - double.hamiltonian().lyapunov_exponents(t)[0]
+        assert abs(apart) < 2.5 / t
+
+
+def test_henon_and_heiles() -> None:
+    """At E = 1/8 there are both: an island of exponent 0, and a sea whose exponent settles between these bounds."""
+
+    def from_a_place(y: float) -> vv.Hamiltonian:
+        speed = np.sqrt(0.25 - y**2 + 2 * y**3 / 3)
+        return vv.systems.henon_heiles().at(position=[0.0, y], momentum=[speed, 0.0])
+
+    chaotic = from_a_place(-0.25).lyapunov_exponents(5000.0)
+    assert 0.035 < chaotic[0] < 0.055
+    assert np.abs(chaotic[1:3]).max() < 0.003
+    assert chaotic[0] + chaotic[3] == pytest.approx(0.0, abs=0.001)
+    assert abs(from_a_place(0.1).lyapunov_exponents(5000.0)[0]) < 0.0025
