@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from visviva.recorded import Recorded
     from visviva.trajectory import Trajectory
 
-__all__ = ["draw_column", "hold_level", "plot_column", "size_of_column"]
+__all__ = ["draw_column", "draw_turning", "hold_level", "plot_column", "size_of_column"]
 
 # Changes below this part of the size of a number are none.
 _CONSTANT = 1e-10
@@ -72,6 +72,20 @@ def draw_column(axes: Any, run: Trajectory, name: str, bodies: Sequence[int], at
     axes.margins(x=0.01)
     # Ends of the scale, of so few digits that they do not lie on each other.
     axes.locator_params(axis="x", nbins=6)
+
+
+def draw_turning(axes: Any, run: Trajectory) -> None:
+    """All components of the angular velocities of rigid bodies, along their own axes, against time."""
+    stride = max(1, len(run) // POINTS)
+    values, names = run.angular_velocity[::stride], _names(run, "rigid_body")
+    for body in range(values.shape[1]):
+        before = f"{names[body]}, " if names else f"{body}, " if values.shape[1] > 1 else ""
+        for at, letter in enumerate(AXES["component"]):
+            axes.plot(run.t[::stride], values[:, body, at], linewidth=0.8, label=f"{before}ω{letter}")
+    axes.set(xlabel="t", ylabel="ω in the body", title="angular velocity")
+    axes.margins(x=0.01)
+    if len(axes.lines) <= LEGEND:
+        legend_beside(axes)
 
 
 def hold_level(axes: Axes, values: NDArray[np.float64], size: float) -> None:

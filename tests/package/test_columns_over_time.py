@@ -126,3 +126,20 @@ def test_columns_of_rigid_bodies_alone() -> None:
     for axes in out.plot("angular_momentum").axes:
         low, high = axes.get_ylim()
         assert high - low >= 0.01 * np.linalg.norm(out.angular_momentum[0])
+
+
+def test_bodies_that_only_turn_are_seen_to_turn() -> None:
+    """Their orbits would be dots in an empty panel."""
+    bodies = [
+        vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name=name, position=[at, 0.0, 0.0])
+        for name, at in (("a", 0.0), ("b", 3.0))
+    ]
+    out = vv.Scene(*bodies).run(t=T)
+    axes = out.plot().axes[0]
+    assert axes.get_title() == "angular velocity"
+    assert [line.get_label() for line in axes.lines] == [f"{name}, ω{letter}" for name in "ab" for letter in "xyz"]
+    assert (lines(axes) == out.angular_velocity.transpose(1, 2, 0).reshape(6, -1)).all()
+    assert axes.get_legend() is not None
+    # Asked for a plane, or of bodies that move, it is orbits.
+    assert out.plot(plane="xy").axes[0].get_title() == "orbits"
+    assert THREE.plot().axes[0].get_title() == "orbits"
