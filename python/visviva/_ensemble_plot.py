@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva._keywords import one_of
+from visviva._plot_columns import hold_level, size_of_column
 from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -50,7 +51,8 @@ def plot_ensemble(
         if "velocity" in run.recorded and run.velocity.shape[2]:
             kinetic = 0.5 * np.einsum("btik,btik,bi->bt", run.velocity, run.velocity, run.ensemble.mass)
             terms = sizes_of_terms(kinetic, values)
-    return _panels(run.t, panels, [label.replace("_", " ") for label in labels], kind, ax, terms=terms)
+    size = size_of_column(run, name, run.ensemble.mass[:, None, :])
+    return _panels(run.t, panels, [label.replace("_", " ") for label in labels], kind, ax, terms=terms, size=size)
 
 
 def plot_generalized(
@@ -97,8 +99,12 @@ def _panels(
     ax: Axes | None,
     *,
     terms: NDArray[np.float64] | None = None,
+    size: float = 0.0,
 ) -> Figure:
-    """One panel for each number of the last axis of (B, T, K); with `terms`, of energies, of their changes."""
+    """One panel for each number of the last axis of (B, T, K); with `terms`, of energies, of their changes.
+
+    `size` is that of what numbers are the sum of, of which changes of 1e-16 are rounding.
+    """
     copies = len(values)
     drawn = None if kind is None else one_of("kind", kind, _KINDS)
     if not len(t):
@@ -123,6 +129,8 @@ def _panels(
             drawn = "lines" if noise or copies <= _MOST_LINES else "bands"
         _KINDS[drawn](panel, t[::stride], numbers, noise)
         panel.set(xlabel="t", ylabel=named)
+        if terms is None:
+            hold_level(panel, numbers, size)
         panel.margins(x=0.01)
         # Ends of the scale, of so few digits that they do not lie on each other.
         panel.locator_params(axis="x", nbins=6)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from visviva._exported import AXES
 from visviva._keywords import one_of
 from visviva._names import body_indices
@@ -16,14 +18,17 @@ from visviva.recorded import COLUMN_AXES, components_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from visviva.recorded import Recorded
     from visviva.trajectory import Trajectory
 
-__all__ = ["draw_column", "plot_column"]
+__all__ = ["draw_column", "draw_turning", "hold_level", "plot_column", "size_of_column"]
+
+# Changes below this part of the size of a number are none.
+_CONSTANT = 1e-10
 
 
 def plot_column(run: Trajectory, column: object, bodies: object, component: object, ax: Axes | None) -> Figure:
@@ -65,9 +70,52 @@ def draw_column(axes: Any, run: Trajectory, name: str, bodies: Sequence[int], at
         axes.plot(run.t[::stride], line, linewidth=0.8, label=names[bodies[index]] if names else None)
     written = name.replace("_", " ")
     axes.set(xlabel="t", ylabel=written if at is None else f"{written}, {AXES[over[-1]][at]}")
+    hold_level(axes, values[:, list(bodies)] if bodies else values, size_of_column(run, name, run.scene.particles.mass))
     axes.margins(x=0.01)
     # Ends of the scale, of so few digits that they do not lie on each other.
     axes.locator_params(axis="x", nbins=6)
+
+
+def draw_turning(axes: Any, run: Trajectory) -> None:
+    """All components of the angular velocities of rigid bodies, along their own axes, against time."""
+    stride = max(1, len(run) // POINTS)
+    values, names = run.angular_velocity[::stride], _names(run, "rigid_body")
+    for body in range(values.shape[1]):
+        before = f"{names[body]}, " if names else f"{body}, " if values.shape[1] > 1 else ""
+        for at, letter in enumerate(AXES["component"]):
+            axes.plot(run.t[::stride], values[:, body, at], linewidth=0.8, label=f"{before}ω{letter}")
+    axes.set(xlabel="t", ylabel="ω in the body", title="angular velocity")
+    axes.margins(x=0.01)
+    if len(axes.lines) <= LEGEND:
+        legend_beside(axes)
+
+
+def hold_level(axes: Axes, values: NDArray[np.float64], size: float) -> None:
+    """Draw numbers that stay but for rounding as what stays: rounding would fill the panel, and look like a signal.
+
+    `size` is that of what they are the sum of, which rounds to parts of itself; at least that of the numbers is taken.
+    """
+    known = values[np.isfinite(values)]
+    if known.size:
+        middle, scale = float(known.mean()), max(float(np.abs(known).max()), size)
+        if np.ptp(known) < _CONSTANT * scale:
+            axes.set_ylim(middle - 0.01 * scale, middle + 0.01 * scale)
+
+
+def size_of_column(run: Recorded, name: str, mass: NDArray[np.float64]) -> float:
+    """How large the numbers are that a column is, or is the sum of, with masses of shape (N,), or (B, 1, N)."""
+    sizes = [getattr(run, name)]
+    far, fast = (
+        np.linalg.norm(getattr(run, each), axis=-1) if each in run.recorded else None
+        for each in ("position", "velocity")
+    )
+    if name == "momentum" and fast is not None:
+        sizes.append((mass * fast).sum(axis=-1))
+    elif name == "angular_momentum" and far is not None and fast is not None:
+        sizes.append((mass * far * fast).sum(axis=-1))
+    elif name == "center_of_mass" and far is not None:
+        sizes.append(far)
+    return max(float(np.abs(each[np.isfinite(each)]).max(initial=0.0)) for each in sizes)
 
 
 def _names(run: Trajectory, over: str) -> tuple[str, ...]:

@@ -102,7 +102,8 @@ def given_axes(axes: Any) -> Axes:
 def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
     """Orbits and, in a figure of its own and if it is known, the relative change of the energy.
 
-    Of motions along one line, which is no picture, places against time instead.
+    Of motions along one line, which is no picture, places against time instead; where bodies turn and none goes
+    anywhere, which is a dot, their angular velocities.
     """
     chosen, shown = chosen_bodies("plot", trajectory, bodies), directions(trajectory.position, plane)
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
@@ -115,11 +116,13 @@ def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, a
         return cast("Figure", ax.figure)
     line = _line(trajectory, chosen) if plane is None else None
     figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0), solid=(0,) if solid else ())
-    if line is None:
+    from visviva._plot_columns import draw_column, draw_turning
+
+    if bodies is None and plane is None and _turns_only(trajectory):
+        draw_turning(axes[0], trajectory)
+    elif line is None:
         _orbits(axes[0], trajectory, chosen, shown)
     else:
-        from visviva._plot_columns import draw_column
-
         draw_column(axes[0], trajectory, "position", chosen, line)
         if trajectory.scene.particles.names and len(chosen) <= LEGEND:
             legend_beside(axes[0])
@@ -138,6 +141,14 @@ def _line(trajectory: Trajectory, bodies: list[int]) -> int | None:
     across = extent <= _LINE * np.maximum(np.abs(places).max(axis=0), extent.max())
     along = np.flatnonzero(~across)
     return int(along[0]) if len(along) == 1 else None
+
+
+def _turns_only(trajectory: Trajectory) -> bool:
+    """Whether there are bodies that turn, and no body goes anywhere, but for rounding."""
+    if len(trajectory) < _A_PATH or "angular_velocity" not in trajectory.recorded:
+        return False
+    still = np.ptp(trajectory.position, axis=0) <= _LINE * np.abs(trajectory.position).max(initial=0.0)
+    return bool(still.all() and trajectory.angular_velocity.any())
 
 
 def chosen_bodies(what: str, trajectory: Trajectory, bodies: object) -> list[int]:

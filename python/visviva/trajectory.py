@@ -273,7 +273,7 @@ class Trajectory(Recorded):
 
         A change of the energy that is no more than rounding is drawn as points in a band of that name. Where all
         bodies stay on one line along x, y or z, places against time are drawn for orbits, if neither a plane nor axes
-        are given.
+        are given; where rigid bodies turn and none goes anywhere, their angular velocities.
 
         Parameters
         ----------

@@ -103,3 +103,43 @@ def test_where_it_is_asked_for_or_is_no_line_orbits_are_drawn() -> None:
     for axes in (own, *(figure.axes[0] for figure in (LINE.plot(plane="xy"), few.plot(), still.plot(), aside.plot()))):
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("x", "y")
         assert axes.get_title() == "orbits"
+
+
+@pytest.mark.parametrize("column", ["momentum", "angular_momentum", "center_of_mass"])
+def test_what_stays_but_for_rounding_is_drawn_as_what_stays(column: Any) -> None:
+    """Sums of many terms: theirs are the roundings, which would fill panels of their own and look like a signal."""
+    scene = vv.datasets.outer_solar_system().scene
+    speed = scene.particles.velocity
+    out, copies = scene.run(t=400.0 * T), scene.ensemble(velocity=np.stack([speed, speed])).run(t=400.0 * T)
+    stays = column != "center_of_mass"
+    for run, values in ((out, getattr(out, column)), (copies, getattr(copies, column)[0])):
+        for at, axes in enumerate(run.plot(column).axes):
+            low, high = axes.get_ylim()
+            moved = np.ptp(values[:, at])
+            assert (moved < 1e-6 * (high - low)) == stays
+            # And the scale has numbers on it.
+            assert sum(low <= tick <= high for tick in axes.get_yticks()) >= 3
+
+
+def test_columns_of_rigid_bodies_alone() -> None:
+    out = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0])).run(t=T)
+    for axes in out.plot("angular_momentum").axes:
+        low, high = axes.get_ylim()
+        assert high - low >= 0.01 * np.linalg.norm(out.angular_momentum[0])
+
+
+def test_bodies_that_only_turn_are_seen_to_turn() -> None:
+    """Their orbits would be dots in an empty panel."""
+    bodies = [
+        vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name=name, position=[at, 0.0, 0.0])
+        for name, at in (("a", 0.0), ("b", 3.0))
+    ]
+    out = vv.Scene(*bodies).run(t=T)
+    axes = out.plot().axes[0]
+    assert axes.get_title() == "angular velocity"
+    assert [line.get_label() for line in axes.lines] == [f"{name}, ω{letter}" for name in "ab" for letter in "xyz"]
+    assert (lines(axes) == out.angular_velocity.transpose(1, 2, 0).reshape(6, -1)).all()
+    assert axes.get_legend() is not None
+    # Asked for a plane, or of bodies that move, it is orbits.
+    assert out.plot(plane="xy").axes[0].get_title() == "orbits"
+    assert THREE.plot().axes[0].get_title() == "orbits"

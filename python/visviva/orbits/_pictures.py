@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
+from visviva._plot_columns import hold_level
 from visviva._style import BLUE, FRAME, VERMILION, legend_beside
 from visviva.errors import InvalidInput
 from visviva.orbits._central import effective_potential
@@ -24,8 +25,6 @@ __all__ = ["plot_elements", "plot_orbit"]
 
 _POINTS = 2000
 _ELEMENTS = ("semi_major_axis", "eccentricity", "inclination")
-# Changes below this part of an element are none.
-_CONSTANT = 1e-10
 # Radial periods of a bound orbit, enough to see its pericenter move on.
 _PERIODS = 6.0
 # How far an orbit that is not bound is drawn, in distances of its start or of its pericenter, the larger of both.
@@ -96,12 +95,7 @@ def _element(
             # Once round, it begins anew.
             shown[1:][np.abs(np.diff(shown)) > 180.0] = np.nan
         axes.plot(t[::stride], shown, linewidth=0.8, label=bodies[at] if bodies else None)
-    known = values[np.isfinite(values)]
-    if known.size:
-        # What stays but for rounding is drawn as what stays.
-        middle, scale = float(known.mean()), max(float(np.abs(known).max()), least)
-        if np.ptp(known) < _CONSTANT * scale:
-            axes.set_ylim(middle - 0.01 * scale, middle + 0.01 * scale)
+    hold_level(axes, values, least)
     axes.margins(x=0.01)
     axes.locator_params(axis="x", nbins=4)
 
