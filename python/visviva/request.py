@@ -324,7 +324,11 @@ def finished(
 
         ended_at_the_stop(result, asked)
     made = make(result)
-    judge(result, ensemble=ensemble)
+    if asked["rigid"] is not None:
+        from visviva._rigid_accuracy import look
+
+        look(result, asked, cast("Any", made)._scene)
+    judge(result, ensemble=ensemble, rigid=asked["rigid"] is not None)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)
