@@ -149,6 +149,11 @@ class GeneralizedEnsemble(Shown):
         Interrupted
             By Ctrl-C.
 
+        Warns
+        -----
+        AccuracyWarning
+            As `GeneralizedSystem.run`, of the copy that is off by most.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
