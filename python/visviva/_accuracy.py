@@ -5,16 +5,13 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from visviva.errors import AccuracyWarning
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-_TOLERATED = 1e-2
+TOLERATED = 1e-2
 """Of kinetic + |potential| energy: beyond it not even the shape of an orbit can be trusted."""
 
 _WANTED = 1e-3
@@ -29,6 +26,13 @@ _LOW_ORDER = 4
 _BLOWN_UP = 1e4
 """Energy errors beyond it have grown from step to step, and tell nothing of how much shorter a step must be."""
 
+_OF_POINTS = (
+    "an adaptive method (verner98)",
+    "an adaptive method (verner98), which finds the steps that close bodies take",
+)
+_OF_RIGID_BODIES = ("leaving dt out, for steps that follow rtol",) * 2
+"""What may be tried beside a shorter step: where it nearly does, and where it does nothing of the kind."""
+
 _PACKAGE = str(Path(__file__).parent)
 
 
@@ -42,8 +46,11 @@ def _callers_inside() -> int:
     return depth
 
 
-def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool) -> None:
-    """Warn of a step longer than the run, events without zeros, and an energy error out of all proportion."""
+def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -> None:
+    """Warn of a step longer than the run, events without zeros, and an energy error out of all proportion.
+
+    Of scenes with rigid bodies or without.
+    """
     for place in result.pop("without_numbers", ()):
         message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
@@ -52,11 +59,11 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool) -> None:
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
-    if error <= _TOLERATED:
+    if error <= TOLERATED:
         _judge_turns(result, ensemble=ensemble)
         return
     whose = f"in copy {copy}, " if ensemble else ""
-    advice = _advice(result, error, dt, order)
+    advice = _advice(result, error, dt, order, _OF_RIGID_BODIES if rigid else _OF_POINTS)
     size = f"{error:.2g}" if error < np.inf else "more than 1e308"
     message = f"{whose}the energy at the end is off by {size} of kinetic + |potential|: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
@@ -78,7 +85,7 @@ def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 
 
-def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) -> str:
+def _advice(result: dict[str, Any], error: float, dt: float | None, order: int, others: tuple[str, str]) -> str:
     if dt is None:
         return "the tolerance does not resolve this motion; try a smaller rtol (the default is 1e-9), and no atol"
     # The error goes as dt to the power of the order, if not quite yet where it is this large: half of that step. Where
@@ -88,25 +95,27 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) 
     named = f"dt = {float(f'{0.5 * longest * (_WANTED / min(error, _BLOWN_UP)) ** power:.0e}'):g}"
     problem = f"a step of dt = {dt:g} does not resolve this motion; "
     if error < _UNRESOLVED:
-        return f"{problem}try {named}, or an adaptive method (verner98)"
-    return (
-        f"{problem}try an adaptive method (verner98), which finds the steps that close bodies take, or at most {named}"
-    )
+        return f"{problem}try {named}, or {others[0]}"
+    return f"{problem}try {others[1]}, or at most {named}"
 
 
-def judge_energies(dt: float, energies: NDArray[np.float64], sizes: NDArray[np.float64], *, ensemble: bool) -> None:
-    """Warn of energies (B, 2) at both ends of runs in equal steps that are conserved and differ out of all proportion.
+def limit_of_energies(dt: float | None) -> float:
+    """The least error of an energy, in generalized coordinates, that is warned of: of equal steps, or chosen ones."""
+    return TOLERATED if dt is None else _UNRESOLVED
 
-    `sizes` (B, 2) are those of the kinetic and potential energies that they are sums of.
-    """
-    with np.errstate(all="ignore"):
-        errors = np.abs(energies[:, 1] - energies[:, 0]) / sizes.max(axis=1)
-    worst = int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))
-    if not errors[worst] > _UNRESOLVED:
-        return
-    whose = f"in copy {worst}, " if ensemble else ""
-    message = (
-        f"{whose}the energy at the end is off by {errors[worst]:.2g} of kinetic + |potential|: a step of dt = {dt:g} "
-        "does not resolve this motion; take a shorter one, or leave it to gauss16, which chooses its own"
-    )
+
+def warn_of_energy(dt: float | None, error: float, copy: int | None) -> None:
+    """Warn of a run in generalized coordinates of which a conserved energy at the end is off by as much."""
+    whose = "" if copy is None else f"in copy {copy}, "
+    if dt is None:
+        cause = (
+            "something that is shorter than a step was passed over, or the tolerance does not resolve this motion; "
+            "give a max_step below the time that its narrowest part takes, or a smaller rtol"
+        )
+    else:
+        cause = (
+            f"a step of dt = {dt:g} does not resolve this motion; take a shorter one, or leave it to gauss16, which "
+            "chooses its own"
+        )
+    message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {cause}"
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())

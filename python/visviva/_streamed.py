@@ -15,6 +15,7 @@ from visviva._arrays import whole_number
 from visviva._parquet import GROUP_BYTES, groups, write
 from visviva._paths import path_text
 from visviva._progress import callback
+from visviva._rigid_accuracy import look
 from visviva.errors import Interrupted
 from visviva.status import Status
 
@@ -67,6 +68,8 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             # The one error of a whole ensemble; it is told of a part, too, that came to its end.
             if result["error"] is not None or (ended == Status.INTERRUPTED).any():
                 raise KeyboardInterrupt
+            if own["rigid"] is not None:
+                look(result, own, part.scene)
             _keep_worst(worst, result, start)
             made = part._finished(result)
             yield from groups(made._exported(None), made._row_axes, start)
@@ -80,7 +83,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             done = int((status != Status.INTERRUPTED).sum())
             where = f", which {path!r} holds" if done else ""
             raise Interrupted(f"interrupted after {done} of {len(copies)} copies{where}") from stopped
-    warn_if_unresolved(worst, ensemble=True)
+    warn_if_unresolved(worst, ensemble=True, rigid=asked["rigid"] is not None)
     return status
 
 

@@ -326,7 +326,11 @@ def finished(
 
         ended_at_the_stop(result, asked)
     made = make(result)
-    warn_if_unresolved(result, ensemble=ensemble)
+    if asked["rigid"] is not None:
+        from visviva._rigid_accuracy import look
+
+        look(result, asked, cast("Any", made)._scene)
+    warn_if_unresolved(result, ensemble=ensemble, rigid=asked["rigid"] is not None)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

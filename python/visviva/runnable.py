@@ -137,8 +137,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         Warns
         -----
         visviva.AccuracyWarning
-            Fixed steps resolved nothing: the energy at the end is off by more than a hundredth of kinetic +
-            |potential|, or the step is longer than the run.
+            Fixed steps, beside rigid bodies, too, resolved nothing: the energy at the end is off by more than a
+            hundredth of kinetic + |potential|, or the step is longer than the run.
 
         References
         ----------

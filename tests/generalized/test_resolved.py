@@ -1,4 +1,4 @@
-"""Runs in equal steps that resolve nothing say so, as scenes do."""
+"""Runs that resolve nothing say so, as scenes do."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sympy
 
 import visviva as vv
 
+EQUAL = {"method": "rk4", "dt": 0.01}
+PASSED_OVER = r"the energy at the end is off by .* of kinetic \+ \|potential\|: something .* was passed over.* max_step"
 SAYS = r"the energy at the end is off by .* of kinetic \+ \|potential\|: a step of dt"
 
 
@@ -40,3 +43,38 @@ def test_what_resolves_it_is_not_blamed(how: dict[str, Any]) -> None:
         pendulum.at(position=[0.0, 0.0], velocity=[0.0, 0.0]).run(t=5.0, **how)
         driven = vv.systems.pendulum(position=[np.pi], velocity=[0.0])
         driven.run(t=5.0, **how)
+
+
+def cliff() -> Any:
+    """A ball that falls on a wall of 5000 a thousandth wide: its steps of a sixth of a second went through it."""
+    x = vv.coordinate("x")
+    step = (1 - sympy.tanh(x / sympy.Float(".001"))) / 2
+    return vv.Lagrangian(x.diff(vv.time) ** 2 / 2 - 9.81 * x - 5e3 * step, [x], position=[1.0])
+
+
+@pytest.mark.parametrize("method", ["auto", "gauss8", "dop853", "verner98", "taylor"])
+def test_what_chosen_steps_pass_over_is_told(method: Any) -> None:
+    """It was below the wall, with 5000 of energy that nothing gave it, and status OK."""
+    with pytest.warns(vv.AccuracyWarning, match=PASSED_OVER) as caught:
+        out = cliff().run([0.0, 5.0], method=method)
+    assert abs(out.energy[-1] - out.energy[0]) > 4e3
+    assert caught[0].filename == __file__
+    # Within half a second a ball from a height of 2 does not come down.
+    with pytest.warns(vv.AccuracyWarning, match="in copy 1, " + PASSED_OVER):
+        cliff().ensemble(position=[[2.0], [1.0]]).run([0.0, 0.6], method=method)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cliff().run(5.0, method=method, max_step=1e-3).position[-1, 0] > 0.0
+
+
+@pytest.mark.parametrize("how", [{}, EQUAL, {"method": "dop853"}, {"method": "dop853", "rtol": 1e-4}])
+def test_a_motion_that_comes_back_to_rest_is_not_blamed(how: dict[str, Any]) -> None:
+    """At both ends all energies are zero but for rounding, of which every part was off by one."""
+    x = vv.coordinate("x")
+    bungee = vv.Lagrangian(x.diff(vv.time) ** 2 / 2 - 2 * x**2 - 9.8 * x, [x], position=[0.0])
+    quartic = vv.Lagrangian(x.diff(vv.time) ** 2 / 2 - x**4 / 4 - x, [x], position=[0.0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for system, period in ((bungee, np.pi), (quartic, 4.3273635)):
+            assert abs(system.run(period, **how).position[-1, 0]) < 1e-3
+            assert abs(system.ensemble(position=[[0.0]] * 3).run(period, **how).position[:, -1]).max() < 1e-3

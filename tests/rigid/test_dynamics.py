@@ -151,6 +151,7 @@ def test_outputs_do_not_steer(name: str) -> None:
     np.testing.assert_allclose(between.orientation, apart.orientation, rtol=0, atol=1e-12)
 
 
+@pytest.mark.filterwarnings("ignore:.*the energy at the end:visviva.AccuracyWarning")  # bits are asked for, not digits
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("method", ["yoshida4", "rk4"])
 def test_a_member_is_as_if_alone(name: str, method: str) -> None:

@@ -37,6 +37,7 @@ def same(one: vv.Scene, other: vv.Scene) -> bool:
     return one.particles == other.particles and one.rigid_bodies == other.rigid_bodies and one.t0 == other.t0
 
 
+@pytest.mark.filterwarnings("ignore:.*the energy at the end:visviva.AccuracyWarning")  # bits are asked for, not digits
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", SCENES)
 def test_legs_have_the_bits_of_one_run(name: str, method: Any, tmp_path: Path) -> None:
@@ -62,6 +63,7 @@ def test_torques_at_velocities_go_on() -> None:
     assert same(first.run(t=2.0, method="rk4", dt=0.1).final, scene.run(t=2.0, method="rk4", dt=0.1).final)
 
 
+@pytest.mark.filterwarnings("ignore:.*the energy at the end:visviva.AccuracyWarning")  # bits are asked for, not digits
 def test_copies_go_on_and_one_of_them() -> None:
     scene = SCENES["several"]()
     spins = np.random.default_rng(1).normal(size=(11, 2, 3))

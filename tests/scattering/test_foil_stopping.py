@@ -25,6 +25,13 @@ def test_protons_in_water(energy, published, tolerance):
         assert mass_stopping("water", "proton", energy, stopping) == pytest.approx(published, rel=tolerance)
 
 
+@pytest.mark.parametrize(("energy", "published", "percent"), [(1e4, 432.9, 30), (5e4, 776.8, 25)])
+def test_slow_protons_in_water_lose_too_much_as_the_help_says(energy, published, percent):
+    """PSTAR again (0.3 % of it nuclear losses at 10 keV): what users are told of the joined formula stays true."""
+    assert mass_stopping("water", "proton", energy) == pytest.approx((1.0 + percent / 100) * published, rel=0.01)
+    assert f"{percent} %" in S.Foil.__doc__
+
+
 @pytest.mark.parametrize(("material", "published"), [("aluminum", 588.0), ("silicon", 588.0), ("gold", 220.0)])
 def test_alphas_of_americium(material, published):
     """5.5 MeV, near what ASTAR has: the joined formula is good to 10 %."""

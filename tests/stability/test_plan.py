@@ -94,6 +94,7 @@ def multistep(method: vv.Method) -> bool:
 
 @pytest.mark.parametrize(("method", "step"), METHODS, ids=NAMES)
 @pytest.mark.parametrize("passives", [1, 5, 64, 65, 200])
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # some come too near to a star for the step
 def test_massless_bodies_never_touch_the_massive(method: vv.Method, step: dict[str, Any], passives: int) -> None:
     alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method.name, **step)
     out = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method.name, **step)

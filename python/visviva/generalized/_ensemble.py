@@ -159,6 +159,11 @@ class GeneralizedEnsemble(Shown):
         Interrupted
             By Ctrl-C; by an executor its ``.trajectory`` has the copies before the first that is not home, or is None.
 
+        Warns
+        -----
+        AccuracyWarning
+            As `GeneralizedSystem.run`, of the copy that is off by most.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv

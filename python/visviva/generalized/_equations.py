@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.generalized._calculus import Calculus
 from visviva.generalized._symbolic import sympy, time
@@ -26,7 +27,7 @@ __all__ = ["EquationsOfMotion", "HamiltonsEquations", "euler_lagrange", "hamilto
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class EquationsOfMotion:
+class EquationsOfMotion(Shown):
     """Lagrange's equations as expressions of SymPy; ``print`` shows them as lines, a notebook as formulas.
 
     Made by `Lagrangian.equations`. A prime of a coordinate in print is its derivative by the time.
@@ -68,8 +69,8 @@ class EquationsOfMotion:
     momenta: list[sp.Eq]
     jacobi_integral: sp.Eq
     conserved: list[str]
-    _written: Mapping[Any, Any]
-    _latex: Mapping[Any, str]
+    _written: Mapping[sp.Basic, sp.Basic]
+    _latex: Mapping[sp.Basic, str]
 
     def __repr__(self) -> str:
         return f"EquationsOfMotion({', '.join(self.coordinates)})"
@@ -87,6 +88,16 @@ class EquationsOfMotion:
             lines.append(f"  {_text(each, self._written)}{kept}")
         lines.append("Jacobi's integral" + (", conserved" if "energy" in self.conserved else ""))
         return "\n".join([*lines, f"  {_text(self.jacobi_integral, self._written)}"])
+
+    def _sheet(self) -> Sheet:
+        rows = [
+            *zip(self.coordinates, self.equations, strict=True),
+            *(("constraint", each) for each in self.constraints),
+            *(("momentum", each) for each in self.momenta),
+            ("Jacobi's integral", self.jacobi_integral),
+        ]
+        texts = [(name, " = ".join(_sides(each, self._written, self._latex))) for name, each in rows]
+        return Sheet("Lagrange's equations", [(name, f"${text}$") for name, text in texts])
 
     def _repr_latex_(self) -> str:
         rows = [*self.equations, *self.constraints, *self.momenta, self.jacobi_integral]
@@ -237,13 +248,15 @@ def _text(equation: Any, written: Mapping[Any, Any]) -> str:
     return f"{left} = {right}"
 
 
+def _sides(equation: Any, written: Mapping[Any, Any], latex: Mapping[Any, str]) -> tuple[str, str]:
+    """Give both sides of an equation in LaTeX."""
+    left, right = (
+        sympy("equations").latex(side.xreplace(dict(written)), symbol_names=dict(latex))
+        for side in (equation.lhs, equation.rhs)
+    )
+    return left, right
+
+
 def _formulas(equations: Iterable[Any], written: Mapping[Any, Any], latex: Mapping[Any, str]) -> str:
-    sp = sympy("equations")
-    rows = []
-    for each in equations:
-        left, right = (
-            sp.latex(side.xreplace(dict(written)), symbol_names=dict(latex)) for side in (each.lhs, each.rhs)
-        )
-        rows.append(f"{left} &= {right}")
-    joined = " \\\\\n".join(rows)
+    joined = " \\\\\n".join(" &= ".join(_sides(each, written, latex)) for each in equations)
     return f"$$\\begin{{aligned}}\n{joined}\n\\end{{aligned}}$$"

@@ -26,6 +26,8 @@ FUNCTIONS = (
     "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
     "asin", "acos", "atan", "asinh", "acosh", "atanh",
 )  # fmt: skip
+#: What a smooth step in the place of a leap needs: one that is narrower than a step is passed over.
+WIDTH = "with a max_step of run that is small enough for steps to see the width"
 #: Where two laws meet.
 SWITCH = "end the run by an event where it switches, and go on from out.final with the other law"
 _LARGER = "write (x + y + abs(x - y)) / 2"
@@ -36,8 +38,8 @@ _LEAPS = {
     "floor_divide": "x // y leaps; write x / y, or end the run by an event where parts differ, and go on from there",
     "remainder": "x % y leaps; where it is to wrap an angle, leave it: sines and cosines do so themselves",
     "divmod": "divmod leaps; end the run by an event where parts differ, and go on from there",
-    "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width)",
-    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2",
+    "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width), " + WIDTH,
+    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2, " + WIDTH,
 } | {name: _WHOLE.format(name) for name in ("floor", "ceil", "trunc", "rint", "round")}
 #: What is bent where its arguments meet.
 _BENT = {"maximum": _LARGER, "fmax": _LARGER, "minimum": _SMALLER, "fmin": _SMALLER}
@@ -259,7 +261,7 @@ class Expression:
     def __bool__(self) -> NoReturn:
         raise self._refused(
             "an expression has no truth value: the function must not branch on coordinates, nor use np.where; "
-            f"{SWITCH}, or blend both with a smooth step, as (1 + np.tanh(x / width)) / 2"
+            f"{SWITCH}, or blend both with a smooth step, as (1 + np.tanh(x / width)) / 2, {WIDTH}"
         )
 
     def __eq__(self, other: object) -> NoReturn:

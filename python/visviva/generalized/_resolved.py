@@ -1,4 +1,4 @@
-"""Whether runs in equal steps have resolved anything, as far as an energy that is conserved tells."""
+"""Whether runs have resolved anything, as far as an energy that is conserved tells."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._accuracy import judge_energies
+from visviva._accuracy import limit_of_energies, warn_of_energy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from visviva.generalized._system import GeneralizedSystem
 
 __all__ = ["warn_if_unresolved"]
+
+_ON_THE_WAY = 17
+"""Times at which a motion is looked at whose energies at its ends may be no measure."""
 
 
 def warn_if_unresolved(
@@ -24,20 +27,45 @@ def warn_if_unresolved(
     values: NDArray[np.float64],
 ) -> None:
     """Warn of runs from states (B, 2n) to others at a time whose energies differ by much of what they are sums of."""
-    if asked["dt"] is None or not system._structure["conserves_energy"]:
+    # What is exact need not be looked at.
+    if asked["method"] == "matrix_exponential" or not system._structure["conserves_energy"]:
         return
-    copies, n = len(starts), len(system.coordinates)
-    ends = [_energies(system, starts, system.t0, values, n), _energies(system, *lasts, values, n)]
-    energies, sizes = (np.stack(columns, axis=1) for columns in zip(*ends, strict=True))
-    judge_energies(asked["dt"], energies, sizes, ensemble=copies > 1)
+    copies, (states, t) = len(starts), lasts
+    times = np.repeat([system.t0, t], copies)
+    energies, sizes = _energies(system, times, np.concatenate([starts, states]), np.concatenate([values, values]))
+    with np.errstate(all="ignore"):
+        changes = np.abs(energies[copies:] - energies[:copies])
+        errors = changes / np.maximum(sizes[:copies], sizes[copies:])
+    errors[~np.isfinite(errors)] = 0.0
+    limit = limit_of_energies(asked["dt"])
+    for copy in np.argsort(-errors):
+        if not errors[copy] > limit:
+            return
+        # A motion that begins at rest and comes back has no energies at its ends to be compared with.
+        error = min(errors[copy], changes[copy] / _largest(system, asked, starts[copy], values[copy]))
+        if error > limit:
+            warn_of_energy(asked["dt"], error, int(copy) if copies > 1 else None)
+            return
+
+
+def _largest(
+    system: GeneralizedSystem, asked: dict[str, Any], start: NDArray[np.float64], values: NDArray[np.float64]
+) -> float:
+    """The largest size of energies on the way, which is run again for it."""
+    outputs = np.linspace(asked["span"][0], asked["span"][1], _ON_THE_WAY)
+    again = system._run(asked | {"outputs": outputs, "events": []}, start[None, :], values[None, :], 1, progress=False)
+    states = again["y"].reshape(-1, len(start))
+    _, sizes = _energies(system, outputs[: len(states)], states, np.tile(values, (len(states), 1)))
+    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
 
 
 def _energies(
-    system: GeneralizedSystem, states: NDArray[np.float64], t: float, values: NDArray[np.float64], n: int
+    system: GeneralizedSystem, times: NDArray[np.float64], states: NDArray[np.float64], values: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Energies (B,), and those of the kinetic and potential energies that they are sums of."""
+    n = len(system.coordinates)
     with np.errstate(all="ignore"):
-        columns = system._model.columns(np.full(len(states), t), np.ascontiguousarray(states), values)
+        columns = system._model.columns(times, np.ascontiguousarray(states), values)
         # ½ p·v, of a quadratic kinetic energy.
         kinetic = 0.5 * np.abs((columns[:, :n] * states[:, n:]).sum(axis=1))
         return columns[:, n], kinetic + np.abs(columns[:, n] - kinetic)

@@ -184,6 +184,12 @@ class Runs(States):
         Interrupted
             By Ctrl-C; ``.trajectory`` holds what was computed.
 
+        Warns
+        -----
+        AccuracyWarning
+            The energy is conserved, but at the end off by more than a hundredth of kinetic + |potential| (a tenth, of
+            steps of `dt`): something shorter than a step was passed over, or the tolerance resolves nothing.
+
         References
         ----------
         Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3

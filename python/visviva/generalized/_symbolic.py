@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 from visviva._keywords import known_keywords
 from visviva._packages import needed
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, SWITCH, Node, Nodes
+from visviva.generalized._nodes import FUNCTIONS, SWITCH, WIDTH, Node, Nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -23,8 +23,9 @@ _Groups: TypeAlias = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 _INSTEAD = {
     "Max": "write (x + y + Abs(x - y))/2, or ",
     "Min": "write (x + y - Abs(x - y))/2, or ",
-    "sign": "write x/Abs(x), which has no value at 0, or tanh(x/width), or ",
-    "Heaviside": "write (1 + tanh(x/width))/2, or ",
+    "sign": f"write x/Abs(x), which has no value at 0, or tanh(x/width), {WIDTH}, or ",
+    "Heaviside": f"write (1 + tanh(x/width))/2, {WIDTH}, or ",
+    "Piecewise": f"blend both with a smooth step, as (1 + tanh(x/width))/2, {WIDTH}, or ",
 }
 
 

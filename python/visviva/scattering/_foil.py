@@ -57,9 +57,11 @@ class Foil(Record):
         What electrons take. ``"lindhard_scharff"``: in proportion to the speed, right for slow ions. ``"bethe"``: right
         for fast ones, 2mv² ≫ I, continued in proportion to the speed below its greatest value. ``"joined"``, for all
         energies: 1/S is the sum of both inverses, with Bethe's logarithm continued as Biersack and Haggmark did; within
-        10 % of what is measured of protons and alphas from 1 MeV per nucleon on, and within 20 % below. ``"none"``:
-        nothing. Where more is known, ``(energy, loss)``: increasing energies in eV and what is lost there in eV/µm,
-        between which logarithms are straight lines; below the first the loss is in proportion to the speed.
+        10 % of what is measured of protons and alphas from 1 MeV per nucleon on. Below it is rough: 30 % too much of
+        protons of 10 keV in water, 25 % at 50 keV, 18 % too little of alphas of 2 MeV in gold. ``"none"``: nothing.
+        Where more is known (for slow ions take a table), ``(energy, loss)``: increasing energies in eV and what is lost
+        there in eV/µm, between which logarithms are straight lines; below the first the loss is in proportion to the
+        speed.
     minimum_angle : float, optional
         Collisions that turn by less, in the center-of-mass frame, are left out. It is an angle and no energy, so that
         small angles are not biased (Mendenhall and Weller). It should be small against the width of what comes through.

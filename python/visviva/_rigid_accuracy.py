@@ -1,0 +1,165 @@
+"""How far energies of scenes with rigid bodies are off after fixed steps, as the core itself tells of particles."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._accuracy import TOLERATED
+from visviva._turning import kept_by_bodies
+from visviva.status import Status
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.scene import Scene
+
+__all__ = ["look"]
+
+_FEW_PAIRS = 100
+"""A sum over so few pairs is nothing beside a run."""
+
+_MANY_EVALUATIONS = 2_000
+"""A sum over pairs takes less than a hundredth of so many evaluations of the forces."""
+
+_ALONE = 10_000
+"""Evaluations beside which a look takes a few hundredths, where copies are looked at one by one."""
+
+_LEAST = 1e-290
+"""Smaller energies may be products with masses that are not normal numbers, and have no digits to be off by."""
+
+_NOTHING = 1e-9
+"""Of what the forces give in a step: energies of a start that tell nothing of how large those of the motion are."""
+
+_COLUMNS = ["energy", "kinetic_energy", "potential_energy"]
+
+_OWN = ("moments", "axes", "center", "orientation", "angular_velocity")
+
+
+def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
+    """Tell in the result of a run of copies of the scene how far the worst of their energies is off at the end.
+
+    Where it costs next to nothing beside the run, and the forces conserve energy.
+    """
+    if asked["rigid"] is None or asked["dt"] is None or not result["stats"]["steps"]:
+        return
+    bodies = asked["mass"].shape[1]
+    together = asked["own_forces"] is None and bool((asked["mass"] == asked["mass"][0]).all())
+    few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
+    fewest = _ALONE if not together else 0 if few else _MANY_EVALUATIONS
+    looked_at = (result["status"] == Status.OK) & (result["per_trajectory"]["evaluations"] >= fewest)
+    copies = np.flatnonzero(looked_at)
+    groups = ([copies] if together else np.split(copies, len(copies))) if len(copies) else []
+    changes, sizes, starts = np.zeros((3, len(looked_at)))
+    for group in groups:
+        if _conserves(asked, group[0], scene):
+            changes[group], sizes[group], starts[group] = _changes(result, asked, group)
+    worst, error = _worst(changes, sizes, starts, asked)
+    if error > 0.0:
+        result["energy_error"] = (worst, error, abs(asked["dt"]), _orders()[result["stats"]["method"]])
+
+
+@cache
+def _orders() -> dict[str, int]:
+    return {method["name"]: method["order"] for method in _core.methods(rigid=True)}
+
+
+def _worst(
+    changes: NDArray[np.float64], sizes: NDArray[np.float64], starts: NDArray[np.float64], asked: _core._Request
+) -> tuple[int, float]:
+    """The copy that is off by most of its size, and by how much."""
+    known = np.isfinite(sizes) & (sizes >= _LEAST) & ~np.isnan(changes)
+    errors = np.divide(changes, sizes, out=np.zeros_like(changes), where=known)
+    for copy in np.argsort(-errors):
+        # The worst is that of which nothing more is to be learned.
+        if errors[copy] > TOLERATED:
+            gained = _gained_in_a_step(asked, copy)
+            if starts[copy] <= _NOTHING * gained:
+                errors[copy] = changes[copy] / (sizes[copy] + gained)
+                continue
+        break
+    worst = int(np.argmax(errors))
+    return worst, float(errors[worst])
+
+
+def _forces(asked: _core._Request, copy: int) -> list[dict[str, Any]]:
+    own = asked["own_forces"]
+    return asked["forces"] if own is None else own[0][own[1][copy]]
+
+
+def _conserves(asked: _core._Request, copy: int, scene: Scene) -> bool:
+    kept = _core.conserves(
+        mass=asked["mass"][copy],
+        forces=_forces(asked, copy),
+        position=asked["position"][copy],
+        velocity=asked["velocity"][copy],
+        about=np.zeros(3),
+    )
+    return kept_by_bodies(scene, kept)["energy"]
+
+
+def _changes(
+    result: dict[str, Any], asked: _core._Request, copies: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """How far energies of copies with the same forces and masses went, kinetic + |potential|, and that at the start."""
+    first = (asked["position"], asked["velocity"], *_turning(asked))
+    states = [np.concatenate([a[copies], b[copies]]) for a, b in zip(first, _last(result), strict=True)]
+    told = _energies(asked, copies[0], states)
+    energy, kinetic, potential = (told[name].reshape(2, -1) for name in _COLUMNS)
+    with np.errstate(all="ignore"):
+        change = np.abs(energy[1] - energy[0])
+        change[np.isfinite(energy[0]) & ~np.isfinite(energy[1])] = np.inf
+        # What is beyond all numbers at the end is no measure.
+        ends = np.where(np.isfinite(potential[1]), np.abs(potential[1]), 0.0)
+        start = kinetic[0] + np.abs(potential[0])
+        return change, np.maximum(start, kinetic[0] + ends), start
+
+
+def _turning(asked: _core._Request) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    rigid: Any = asked["rigid"]
+    return rigid["orientation"], rigid["angular_velocity"]
+
+
+def _last(result: dict[str, Any]) -> list[NDArray[np.float64]]:
+    return [result["final"][name] for name in ("position", "velocity", "orientation", "angular_velocity")]
+
+
+def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+    """Of states along the first axis, of bodies with the masses and forces of that copy."""
+    position, velocity, *turning = states
+    return _core.conserved(
+        mass=asked["mass"][copy],
+        forces=_forces(asked, copy),
+        position=position,
+        velocity=velocity,
+        about=np.zeros(3),
+        columns=_COLUMNS,
+        turning=(_rigid(asked, copy), turning[0], turning[1]),
+    )
+
+
+def _rigid(asked: _core._Request, copy: int) -> _core._Rigid:
+    """The rigid bodies of one copy."""
+    own: Any = asked["rigid"]
+    of_copy: _core._Rigid = own | {name: own[name][copy : copy + 1] for name in _OWN}
+    return of_copy
+
+
+def _gained_in_a_step(asked: _core._Request, copy: int) -> float:
+    """The kinetic energy after a step from the start of a copy.
+
+    Of a motion that begins at rest, where potential energies vanish, and comes back there, nothing else tells how large
+    its energies are.
+    """
+    request: Any = dict(asked)
+    for name in ("mass", "position", "velocity"):
+        request[name] = request[name][copy : copy + 1]
+    step = np.copysign(asked["dt"] or 0.0, asked["times"][-1] - asked["t0"])
+    request |= {"rigid": _rigid(asked, copy), "radius": None, "forces": _forces(asked, copy), "own_forces": None}
+    request |= {"times": np.array([asked["t0"] + step]), "end_only": True, "continuation": None, "events": []}
+    result = _core.run(request, threads=1, progress=None, ensemble=False)
+    kinetic = float(_energies(asked, copy, _last(result))["kinetic_energy"][0])
+    return kinetic if np.isfinite(kinetic) else 0.0

@@ -1,0 +1,78 @@
+"""Fixed steps of scenes with rigid bodies that resolved nothing do not end without a word; others are not spoken to."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ON_A_SPRING = vv.Scene(
+    vv.RigidBody(1.0, moments=[0.1, 0.2, 0.25]),
+    vv.AttachedSpring(0, [0.3, 0.1, 0.2], stiffness=5000.0, length=1.0, anchor=[1.5, 0.0, 0.3]),
+)
+PASSAGE = vv.Scene(
+    vv.Particles([0.1], [[3.0, 0.3, 0.0]], [[-1.0, 0.0, 0.0]]),
+    vv.RigidBody(10.0, moments=[2.0, 3.0, 4.0]),
+    vv.Gravity(1.0),
+)
+SAYS = r"the energy at the end is off by .* of kinetic \+ \|potential\|: a step of dt = 0\.1 .* leaving dt out"
+
+
+@pytest.mark.parametrize(("scene", "t"), [(ON_A_SPRING, 2.0), (PASSAGE, 10.0)])
+def test_an_energy_that_is_off_by_orders_is_said(scene: vv.Scene, t: float) -> None:
+    """It was 1e215 for 108, and 4e6 for -0.3, with status OK."""
+    with pytest.warns(vv.AccuracyWarning, match=SAYS) as caught:
+        out = scene.run(t=[0.0, t], dt=0.1)
+    assert out.status is vv.Status.OK
+    assert caught[0].filename == __file__
+
+
+def test_backward_runs_are_looked_at() -> None:
+    with pytest.warns(vv.AccuracyWarning, match=SAYS):
+        ON_A_SPRING.run(t=[-2.0], dt=-0.1)
+
+
+def test_the_step_that_is_named_resolves_it() -> None:
+    with pytest.warns(vv.AccuracyWarning, match=SAYS) as caught:
+        ON_A_SPRING.run(t=2.0, dt=0.1)
+    better = float(str(caught[0].message).rsplit("dt = ", 1)[1])
+    ON_A_SPRING.run(t=2.0, dt=better)
+
+
+@pytest.mark.parametrize("own", ["position", "mass", "parameters"])
+def test_the_copy_is_named(own: str, tmp_path: Path) -> None:
+    """Bodies pass far apart but in copy 1; copies of other forces or masses are looked at after many evaluations."""
+    places = np.array([[[3.0, 30.0, 0.0], [0.0, 0.0, 0.0]], PASSAGE.particles.position, [[3.0, 40.0, 0.0], [0.0] * 3]])
+    more = {"mass": [[0.1, 10.0], [0.2, 10.0], [0.3, 10.0]]}, {"parameters": {"Gravity": {"G": [1.0, 1.01, 1.0]}}}
+    given = {"position": {}, "mass": more[0], "parameters": more[1]}[own]
+    copies = PASSAGE.ensemble(position=places, **given)
+    how = {"t": 65.0, "dt": 0.1}
+    with pytest.warns(vv.AccuracyWarning, match="in copy 1, " + SAYS):
+        copies.run(**how)
+    with pytest.warns(vv.AccuracyWarning, match="in copy 1, " + SAYS):
+        copies.run_to_parquet(**how, to=tmp_path / "copies.parquet", copies_at_once=1)
+
+
+def test_what_resolves_it_is_not_blamed() -> None:
+    drag = vv.RotationalDrag(0.5)
+    body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ON_A_SPRING.run(t=2.0, dt=0.001)
+        vv.Scene(body, drag).run(t=10.0, dt=0.1, method="rk4")
+        vv.Scene(body, vv.AppliedTorque([0.0, 0.0, 5.0])).run(t=10.0, dt=0.1)
+        # At rest nothing is there to be compared with.
+        vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5]), vv.AppliedTorque([0.0, 0.0, 0.0])).run(t=1.0, dt=0.1)
+
+
+@pytest.mark.parametrize("method", ["kahan_li8", "leapfrog"])
+def test_a_motion_that_comes_back_to_rest_is_not_blamed(method: vv.typing.MethodName) -> None:
+    """At both ends all energies are zero but for the error of a step, of which every part was off by one."""
+    spring = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=4.0, length=0.0, anchor=[0.0, 0.0, 0.0])
+    scene = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5]), spring, vv.UniformField([0.0, 0.0, -9.8]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = scene.run(t=np.pi, method=method, dt=0.01)
+    assert np.abs(out.velocity[-1]).max() < 1e-2
