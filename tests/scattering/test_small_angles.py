@@ -60,8 +60,10 @@ def test_it_is_infinite_straight_on_where_a_potential_ends_nowhere(potential: V.
 
 def test_what_ends_has_an_area() -> None:
     assert S.total_cross_section(V.HardSphere(2.0), energy=1.0, theta_min=0.0) == pytest.approx(4 * np.pi, rel=1e-14)
-    # Nothing leads there, and that is no negative zero.
-    assert str(S.cross_section(V.HardSphere(2.0), energy=1.0, angle=0.0)) == "0.0"
+    # What grazes it turns by as little as one likes: R²/4, to the two digits that R − b has there.
+    assert S.cross_section(V.HardSphere(2.0), energy=1.0, angle=0.0) == pytest.approx(1.0, rel=1e-2)
+    # A soft center turns nothing back, and that is no negative zero.
+    assert str(S.cross_section(V.Plummer(0.1, 1.0), energy=1.0, angle=3.0)) == "0.0"
 
 
 def test_plummers_tail_is_coulombs() -> None:
