@@ -17,7 +17,7 @@ from visviva.generalized._symbolic import Symbols, sympy, time
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-__all__ = ["formula", "named", "of_distance", "parameter_names", "table"]
+__all__ = ["formula", "looks_at_time", "named", "of_distance", "parameter_names", "table"]
 
 #: Operations by their numbers in a table; functions come after them.
 _OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
@@ -42,6 +42,14 @@ def table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]
 def parameter_names(numbers: Iterable[float]) -> tuple[str, ...]:
     """Give the names of the parameters that a table has, in the order of their values."""
     return tuple("".join(map(chr, letters)) for operation, _, letters in _rows(numbers) if operation == _NAME)
+
+
+def looks_at_time(numbers: Iterable[float]) -> bool:
+    """Whether anything in a table, which has the time in it with or without need, depends on it."""
+    numbers = list(numbers)
+    rows = [row for row in _rows(numbers) if row[0] != _NAME]
+    needed = {int(at) for at in (*numbers[1 : 1 + int(numbers[0])], *(at for row in rows for at in row[2]))}
+    return any(_OPERATIONS[rows[at][0]] == "time" for at in needed)
 
 
 def formula(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> str:
