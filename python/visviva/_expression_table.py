@@ -17,7 +17,15 @@ from visviva.generalized._symbolic import Symbols, sympy, time
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-__all__ = ["checked_parameters", "distance_table", "formulas", "parameter_names", "parameter_values", "table"]
+__all__ = [
+    "checked_parameters",
+    "distance_table",
+    "formulas",
+    "looks_at_time",
+    "parameter_names",
+    "parameter_values",
+    "table",
+]
 
 #: Operations by their numbers in a table; functions come after them.
 _OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
@@ -49,6 +57,14 @@ def parameter_values(numbers: Iterable[float], values: Sequence[float]) -> dict[
     names = parameter_names(numbers)
     names += tuple(f"values[{index}]" for index in range(len(names), len(values)))
     return dict(zip(names, values, strict=False))
+
+
+def looks_at_time(numbers: Iterable[float]) -> bool:
+    """Whether anything in a table, which has the time in it with or without need, depends on it."""
+    numbers = list(numbers)
+    rows = [row for row in _rows(numbers) if row[0] != _NAME]
+    needed = {int(at) for at in (*numbers[1 : 1 + int(numbers[0])], *(at for row in rows for at in row[2]))}
+    return any(_OPERATIONS[rows[at][0]] == "time" for at in needed)
 
 
 def formulas(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> list[str]:

@@ -7,6 +7,7 @@ themselves is in `_audit_motions` and `_audit_methods`, forces between bodies in
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -18,11 +19,12 @@ from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._audit_third_law import ThirdLaw, third_law
+from visviva._expression_table import looks_at_time
 from visviva._html import Record
 from visviva._keywords import known_keywords, unknown_name
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
-from visviva.forces import Force
+from visviva.forces import DrivenForce, ExpressedForce, Force
 from visviva.particles import Particles
 from visviva.scene import Scene
 
@@ -233,12 +235,28 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
 
 def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
     """F·v of every body at every time."""
-    rows = [
-        mass[:, None] * Scene(Particles(mass, *state), force, t0=float(now)).acceleration()
-        for now, *state in zip(t, x, v, strict=True)
-    ]
-    power: NDArray[np.float64] = np.einsum("tnc,tnc->tn", np.array(rows).reshape(x.shape), v)
+    power: NDArray[np.float64] = np.einsum("tnc,tnc->tn", mass[:, None] * _accelerations(force, mass, t, x, v), v)
     return power
+
+
+def _accelerations(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
+    """Those of every body at every time, (T, N, 3): all times as so many more bodies, if a force is the same at all."""
+    own = force._to_core()
+    if not (isinstance(force, DrivenForce) or (isinstance(force, ExpressedForce) and looks_at_time(force.nodes))):
+        several = [p.name for p in force._parameters if p.kind == "numbers" and np.ndim(own[p.name]) == 1]
+        if all(len(own[name]) == len(mass) for name in several):
+            of_all = own | {name: np.tile(own[name], len(t)) for name in several}
+            masses, places, velocities = np.tile(mass, len(t)), x.reshape(-1, 3), v.reshape(-1, 3)
+            # What is refused is refused below, where bodies have the numbers that they have in the run.
+            with suppress(InvalidInput):
+                return _core.acceleration(
+                    mass=masses, forces=[of_all], position=places, velocity=velocities, t0=float(t[0])
+                ).reshape(x.shape)
+    rows = [
+        _core.acceleration(mass=mass, forces=[own], position=places, velocity=velocities, t0=now)
+        for now, places, velocities in zip(t.tolist(), x, v, strict=True)
+    ]
+    return np.array(rows).reshape(x.shape)
 
 
 @known_keywords

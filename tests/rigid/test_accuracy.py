@@ -76,3 +76,13 @@ def test_a_motion_that_comes_back_to_rest_is_not_blamed(method: vv.typing.Method
         warnings.simplefilter("error")
         out = scene.run(t=np.pi, method=method, dt=0.01)
     assert np.abs(out.velocity[-1]).max() < 1e-2
+
+
+def test_bodies_that_end_in_one_place_are_no_error() -> None:
+    """Of which no energy is told."""
+    ball = vv.Particles([1.0], [[-1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
+    out = vv.Scene(ball, vv.RigidBody(1.0, [1.0, 2.0, 3.0]), vv.Gravity(1e-300)).run(
+        t=1.0, dt=0.125, method="leapfrog_dkd"
+    )
+    assert not np.isfinite(out.energy[-1])
+    assert out.status is vv.Status.OK

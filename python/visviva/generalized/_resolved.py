@@ -35,25 +35,27 @@ def warn_if_unresolved(
     energies, sizes = _energies(system, times, np.concatenate([starts, states]), np.concatenate([values, values]))
     with np.errstate(all="ignore"):
         changes = np.abs(energies[copies:] - energies[:copies])
-        errors = changes / np.maximum(sizes[:copies], sizes[copies:])
+        sizes = np.maximum(sizes[:copies], sizes[copies:])
+        errors = changes / sizes
     errors[~np.isfinite(errors)] = 0.0
     limit = limit_of_energies(asked["dt"])
     for copy in np.argsort(-errors):
         if not errors[copy] > limit:
             return
         # A motion that begins at rest and comes back has no energies at its ends to be compared with.
-        error = min(errors[copy], changes[copy] / _largest(system, asked, starts[copy], values[copy]))
+        error = float(changes[copy] / max(sizes[copy], _largest(system, asked, starts[copy], t, values[copy])))
         if error > limit:
             warn_of_energy(asked["dt"], error, int(copy) if copies > 1 else None)
             return
 
 
 def _largest(
-    system: GeneralizedSystem, asked: dict[str, Any], start: NDArray[np.float64], values: NDArray[np.float64]
+    system: GeneralizedSystem, asked: dict[str, Any], start: NDArray[np.float64], t: float, values: NDArray[np.float64]
 ) -> float:
-    """The largest size of energies on the way, which is run again for it."""
-    outputs = np.linspace(asked["span"][0], asked["span"][1], _ON_THE_WAY)
-    again = system._run(asked | {"outputs": outputs, "events": []}, start[None, :], values[None, :], 1, progress=False)
+    """The largest size of energies on the way to that time, which is run again for it."""
+    outputs = np.linspace(system.t0, t, _ON_THE_WAY)
+    way = asked | {"outputs": outputs, "span": (system.t0, t), "events": []}
+    again = system._run(way, start[None, :], values[None, :], 1, progress=False)
     states = again["y"].reshape(-1, len(start))
     _, sizes = _energies(system, outputs[: len(states)], states, np.tile(values, (len(states), 1)))
     return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
