@@ -135,6 +135,7 @@ def _joined(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]
     result |= _left(parts)
     if "dt_beyond" in first:
         result["dt_beyond"] = first["dt_beyond"]
+    result["without_numbers"] = sorted(set.intersection(*(set(part["without_numbers"]) for part in parts)))
     # The worst of all; of equals the last, as the core has it.
     errors = [
         (part["energy_error"][0] + start, *part["energy_error"][1:])
