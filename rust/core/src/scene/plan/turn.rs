@@ -75,7 +75,14 @@ fn turn_about(scene: &Scene, copy: usize, constant: f64, (body, about): (usize, 
     let pericenter = axis * (1.0 - eccentricity);
     let circle = |radius: f64| TAU * radius * (radius / strength).sqrt();
     let (period, at_pericenter) = (circle(axis), circle(pericenter));
-    (axis > 0.0).then_some(Turn { about, eccentricity, pericenter, period, at_pericenter })
+    // Of a pull beyond all numbers no time is known.
+    (axis > 0.0 && strength < f64::INFINITY).then_some(Turn {
+        about,
+        eccentricity,
+        pericenter,
+        period,
+        at_pericenter,
+    })
 }
 
 /// A step that is too long for an orbit at the start.
