@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from visviva._column_axes import COLUMN_AXES, components_of
 from visviva._keywords import one_of
 from visviva._plot_columns import hold_level, size_of_column
 from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import POINTS, given_axes, is_noise, mark_round_off, new_figure, sizes_of_terms
-from visviva.recorded import COLUMN_AXES, components_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from visviva._column_axes import COLUMN_AXES, components_of
 from visviva._exported import AXES
 from visviva._keywords import one_of
 from visviva._names import body_indices
@@ -13,7 +14,6 @@ from visviva._style import legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import LEGEND, POINTS, chosen_bodies, given_axes, new_figure, plot_energy
-from visviva.recorded import COLUMN_AXES, components_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

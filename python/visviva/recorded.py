@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva import _core
-from visviva._exported import AXES, Columns, Exported, chosen_columns, labels
+from visviva._column_axes import COLUMN_AXES
+from visviva._exported import Columns, Exported, chosen_columns, labels
 from visviva._html import Sheet, Shown
-from visviva._keywords import frozen, known_keywords, one_of
+from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
 from visviva._text import count
 from visviva._totals import Totals
@@ -37,33 +37,6 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
 
 __all__ = ["Recorded"]
-
-
-# The axes of a column after time: what it is over, and the numbers of each.
-COLUMN_AXES: dict[str, tuple[str, ...]] = {
-    "position": ("body", "component"),
-    "velocity": ("body", "component"),
-    "orientation": ("rigid_body", "quaternion"),
-    "angular_velocity": ("rigid_body", "component"),
-}
-COLUMN_AXES |= {name: ("component",) if width == 3 else () for name, _, width, _ in _core.columns()}
-
-
-def components_of(name: str, component: object) -> tuple[list[str], list[int]]:
-    """The letters of the numbers that a column has at a time, and which of them are chosen: all if none is named.
-
-    Raises
-    ------
-    visviva.InvalidInput
-        For a component that is none of them, or of a column that is one number.
-    """
-    over = COLUMN_AXES[name]
-    letters = [str(each) for each in AXES[over[-1]]] if over else []
-    if component is None:
-        return letters, list(range(len(letters)))
-    if not letters:
-        raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
-    return letters, [letters.index(one_of("component", component, letters))]
 
 
 # What people look for from elsewhere, and where it is here.

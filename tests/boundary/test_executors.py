@@ -213,8 +213,7 @@ import numpy as np, visviva as vv
 def main():
     from dask.distributed import Client, LocalCluster
 
-    scene = vv.problems.figure_eight().scene
-    copies = scene.ensemble(position=scene.particles.position * np.linspace(0.95, 1.05, 50)[:, None, None])
+    {copies}
     here = copies.run(t=[1.0, 2.0])
     with LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
         there = copies.run(t=[1.0, 2.0], executor=client)
@@ -225,9 +224,19 @@ if __name__ == "__main__":
 """
 
 
-def test_a_dask_client_is_an_executor(tmp_path: Path) -> None:
+OF_SCENES = """
+    scene = vv.problems.figure_eight().scene
+    copies = scene.ensemble(position=scene.particles.position * np.linspace(0.95, 1.05, 50)[:, None, None])
+"""
+IN_GENERALIZED_COORDINATES = """
+    copies = vv.systems.pendulum(position=[0.5]).ensemble(parameters={"l": np.linspace(0.5, 2.0, 50)})
+"""
+
+
+@pytest.mark.parametrize("copies", [OF_SCENES, IN_GENERALIZED_COORDINATES], ids=["scenes", "generalized coordinates"])
+def test_a_dask_client_is_an_executor(tmp_path: Path, copies: str) -> None:
     pytest.importorskip("distributed")
     program = tmp_path / "program.py"
-    program.write_text(PROGRAM)
+    program.write_text(PROGRAM.replace("{copies}", copies.strip()))
     done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=300, check=False)
     assert done.stdout.strip() == "True", done.stderr

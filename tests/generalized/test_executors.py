@@ -1,8 +1,6 @@
 """Ensembles in generalized coordinates by executors: the bits of the run without one, whoever is lost on the way."""
 
 import multiprocessing
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
@@ -146,28 +144,3 @@ def test_what_cannot_be_sent_is_refused_by_name() -> None:
         with pytest.raises(vv.InvalidInput, match=told):
             pendulums().run(t=1.0, **{"executor": nobody, **how})
     assert nobody.left == -1000
-
-
-PROGRAM = """
-import numpy as np, visviva as vv
-
-def main():
-    from dask.distributed import Client, LocalCluster
-
-    copies = vv.systems.pendulum(position=[0.5]).ensemble(parameters={"l": np.linspace(0.5, 2.0, 50)})
-    here = copies.run(t=[1.0, 2.0])
-    with LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
-        there = copies.run(t=[1.0, 2.0], executor=client)
-    print((here.position == there.position).all())
-
-if __name__ == "__main__":
-    main()
-"""
-
-
-def test_a_dask_client_is_an_executor(tmp_path: Path) -> None:
-    pytest.importorskip("distributed")
-    program = tmp_path / "program.py"
-    program.write_text(PROGRAM)
-    done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=300, check=False)
-    assert done.stdout.strip() == "True", done.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any, Self
 
 from visviva._files import write
@@ -148,10 +149,10 @@ class GoesOn:
             )
         return found
 
+    @abstractmethod
     def _again(self, n_events: int, threads: int | None, progress: Progress, executor: Executor | None) -> Self:
         """The next events."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _kept(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Header and arrays of a file."""
-        raise NotImplementedError
