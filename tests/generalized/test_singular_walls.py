@@ -59,3 +59,39 @@ def test_what_stays_finite_where_it_divides_by_zero_is_no_pole() -> None:
     out = swing.run(50.0)
     assert out.status is vv.Status.OK
     assert np.ptp(out.energy) < 1e-12
+
+
+def test_outputs_events_and_momenta_lead_to_the_same_end() -> None:
+    """To the bit, but for momenta, whose steps are of other numbers: rtol is 1e-12."""
+    plain = floor(0.01, 12).run(3.0)
+    read = floor(0.01, 12).run(np.linspace(0.0, 3.0, 301))
+    assert (read.position > 0.0).all()
+    assert read.position[-1] == plain.position[-1]
+    watched = floor(0.01, 12).run(3.0, events=[vv.events.coordinate("x", 0.5)])
+    assert watched.position[-1] == plain.position[-1]
+    assert len(watched.events) == 6  # twice for each of three bounces
+    assert floor(0.01, 12).hamiltonian().run(3.0).position[-1, 0] == pytest.approx(plain.position[-1, 0], abs=1e-9)
+
+
+def test_walls_that_move_and_beads_on_wires() -> None:
+    """The wall swings; the bead on x = y falls half as fast. Steps of 1e-4 see both walls."""
+    moving = (sp.Float(0.01) / (x - sp.sin(vv.time) / 10)) ** 12
+    swung = vv.Lagrangian(vx**2 / 2 - 9.81 * x - moving, [x], position=[1.0])
+    bead = vv.Lagrangian(
+        (vx**2 + vy**2) / 2 - 9.81 * y - (sp.Float(0.01) / y) ** 12, [x, y], constraints=[x - y], position=[1.0, 1.0]
+    )
+    for system in (swung, bead):
+        right = system.run(2.0, method="dop853", rtol=1e-13, max_step=1e-4).position[-1]
+        np.testing.assert_allclose(system.run(2.0).position[-1], right, atol=1e-9)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_walls_of_copies_are_their_own(threads: int) -> None:
+    a = sp.Symbol("a")
+    ball = vv.Lagrangian(vx**2 / 2 - 9.81 * x - (a / x) ** 12, [x], parameters={a: 0.01}, position=[1.0])
+    walls = np.tile(np.linspace(0.005, 0.02, 9), 20)
+    many = ball.ensemble(parameters={a: walls}).run([3.0], threads=threads)
+    for index in (0, 3, 8, 90, 179):
+        alone = floor(walls[index], 12).run([3.0])
+        assert many.position[index, 0] == pytest.approx(alone.position[0], abs=1e-9)
+    assert (many.position[:9] == many.position[9:18]).all()
