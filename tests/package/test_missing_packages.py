@@ -48,7 +48,7 @@ CALLS: dict[tuple[str, str], list[tuple[str, Callable[[Path], Any]]]] = {
     ("cycler", "plot"): [("plot", lambda _: vv.plot_style())],
     ("sympy", "symbolic"): [
         ("L", lambda _: SWING.momenta),
-        ("L", lambda _: vv.coordinate("x").diff(vv.time)),
+        ("names", lambda _: vv.coordinate("x").diff(vv.time)),
         ("function", lambda _: vv.potentials.Custom(SQUARE)),
     ],
     ("pyarrow", "parquet"): [

@@ -138,7 +138,7 @@ def coordinate(names: str) -> Any:
     for name in names.replace(",", " ").split():
         if not name.isidentifier() or name == "t":
             raise InvalidInput("names", f"expected names as theta, and not t, which is the time, got {name!r}")
-    sp = sympy()
+    sp = sympy("names")
     made = tuple(sp.Function(name)(sp.Symbol("t")) for name in names.replace(",", " ").split())
     return made[0] if len(made) == 1 else made
 
