@@ -23,6 +23,7 @@ import sys
 import warnings
 from functools import partial
 from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any
@@ -169,8 +170,13 @@ def picture(name: str, found: vv.WorkPrecision, folder: Path) -> Path:
     axes.set(title=name, xlim=(ROUGHEST, 1e-15), ylim=(0.5 * min(seconds), 2.0 * max(seconds)))
     axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.supxlabel("\n".join(wrap(machine(), 130)), fontsize=6, color="0.4")
-    path = folder / f"{slug(name)}.png"
-    figure.savefig(path, dpi=90)
+    path, drawn = folder / f"{slug(name)}.png", BytesIO()
+    figure.savefig(drawn, dpi=90)
+    # A few lines have few colors: a palette is a third of the size.
+    from PIL import Image  # which comes with matplotlib
+
+    with Image.open(drawn) as image:
+        image.convert("RGB").quantize(256).save(path, optimize=True)
     return path
 
 
