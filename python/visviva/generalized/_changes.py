@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva.errors import ConvergenceError, InvalidInput
+from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, time
+from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -136,8 +137,7 @@ def flow_jacobian(
     start = np.concatenate([system._start(), np.eye(n).ravel()])
     model = system._model.variational()
     result = model.run(asked, start[None, :], system._values[None, :], 1, None)
-    if result["failures"][0] is not None:
-        raise ConvergenceError(result["failures"][0], result["reached"][0])
+    whole(result, "flow")
     last = result["y"][-1]
     return last[:n], last[n:].reshape(n, n)
 
@@ -177,6 +177,8 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         }
         both = np.concatenate([state, frame.ravel()])
         result = model.run(asked, both[None, :], system._values[None, :], 1, None)
+        if result["interrupted"]:
+            raise Interrupted("the exponents were interrupted")
         failed, stretch = result["failures"][0], np.zeros(n)
         if failed is None and np.isfinite(result["y"][-1]).all():
             last = result["y"][-1]

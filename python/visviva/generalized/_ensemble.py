@@ -189,5 +189,10 @@ class GeneralizedEnsemble(Shown):
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
-        warn_if_unresolved(self.system, asked, self._states, (out._states[:, -1], float(out.t[-1])), self._parameters)
+        lasts = out._states[:, -1], float(out.t[-1])
+        try:
+            warn_if_unresolved(self.system, asked, self._states, lasts, self._parameters)
+        except Interrupted as interrupted:
+            interrupted.trajectory = out
+            raise
         return out

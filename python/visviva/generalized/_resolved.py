@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._accuracy import limit_of_energies, warn_of_energy
+from visviva.errors import Interrupted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +27,13 @@ def warn_if_unresolved(
     lasts: tuple[NDArray[np.float64], float],
     values: NDArray[np.float64],
 ) -> None:
-    """Warn of runs from states (B, 2n) to others at a time whose energies differ by much of what they are sums of."""
+    """Warn of runs from states (B, 2n) to others at a time whose energies differ by much of what they are sums of.
+
+    Raises
+    ------
+    Interrupted
+        After Ctrl-C while a motion is run again; whoever has the run gives it along.
+    """
     # What is exact need not be looked at.
     if asked["method"] == "matrix_exponential" or not system._structure["conserves_energy"]:
         return
@@ -56,6 +63,8 @@ def _largest(
     outputs = np.linspace(system.t0, t, _ON_THE_WAY)
     way = asked | {"outputs": outputs, "span": (system.t0, t), "events": []}
     again = system._run(way, start[None, :], values[None, :], 1, progress=False)
+    if again["interrupted"]:
+        raise Interrupted("the look at the energies was interrupted")
     states = again["y"].reshape(-1, len(start))
     _, sizes = _energies(system, outputs[: len(states)], states, np.tile(values, (len(states), 1)))
     return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))

@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.generalized._calculus import Calculus
+from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -159,8 +160,7 @@ def _crossings(
     function = {"nodes": c._nodes.all, "root": section._place, "energy": None, "function": None}
     asked["events"] = [function | {"direction": float(np.sign(rates[name])), "last": None}]
     result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
-    if result["failures"][0] is not None:
-        raise ConvergenceError(result["failures"][0], result["reached"][0])
+    whole(result, "motion")
     times, states = result["found_t"] - system.t0, result["found_y"]
     along = np.concatenate([states, result["y"], start[None, :]])
     return times, states, np.ptp(along, axis=0) + np.abs(along).max(axis=0)
@@ -217,8 +217,7 @@ def _states(system: Hamiltonian, start: NDArray[np.float64], times: NDArray[np.f
     order = np.argsort(np.abs(times[1:] - times[0]))
     asked, _ = system._asked(times[1:][order], "gauss16", _RTOL, None, None)
     result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
-    if result["failures"][0] is not None:
-        raise ConvergenceError(result["failures"][0], result["reached"][0])
+    whole(result, "motion")
     states = np.empty((len(order), 2))
     states[order] = result["y"][-len(order) :]
     return states

@@ -220,9 +220,12 @@ class Runs(States):
             raise ConvergenceError(failure, result["reached"][0], out)
         assert len(out.t) == len(outputs) or out.status is Status.STOPPED
         if len(out.t):
-            warn_if_unresolved(
-                as_system(self), asked, start[None, :], (out._states[-1:], float(out.t[-1])), self._values[None, :]
-            )
+            lasts = out._states[-1:], float(out.t[-1])
+            try:
+                warn_if_unresolved(as_system(self), asked, start[None, :], lasts, self._values[None, :])
+            except Interrupted as interrupted:
+                interrupted.trajectory = out
+                raise
         return out
 
     def _run(
