@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -126,3 +128,21 @@ def test_neighbors_that_leave_the_range_of_numbers_are_told_in_shorter_parts() -
     np.testing.assert_allclose(exponents, [np.sqrt(50.0), -np.sqrt(50.0)], atol=0.02)
     # Each of some hundreds of e-foldings is known to rtol.
     assert abs(exponents.sum()) < 1e-9
+
+
+@pytest.mark.parametrize("n", [2, 7, 8, 10, 14])
+def test_a_chain_of_any_length_hangs_stably(n: int) -> None:
+    """Of all equilibria of n links one is stable: all of them hang straight down."""
+    (hanging,) = (each for each in vv.systems.chain(n).equilibria() if each.stable)
+    assert abs(hanging.position).max() < 1e-12  # where slopes of n g have the last digit of 1 left over
+
+
+def test_the_place_where_a_system_is_may_be_an_equilibrium() -> None:
+    """Nine coordinates, each in a narrow well that is hit by nothing else than the start."""
+    at = 2.0 + 0.1 * np.arange(9)
+
+    def wells(q: Any, v: Any, _: Any) -> Any:
+        return sum(v[k] ** 2 / 2 + np.exp(-400.0 * (q[k] - float(at[k])) ** 2) for k in range(9))
+
+    system = vv.Lagrangian(wells, [f"q{k}" for k in range(9)], position=at)
+    assert any(each.stable and np.array_equal(each.position, at) for each in system.equilibria())

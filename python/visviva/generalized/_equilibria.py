@@ -83,8 +83,10 @@ def starts_of_a_search(n: int) -> NDArray[np.float64]:
     spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
     places = np.pi * (2.0 * spread - 1.0)
     # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
-    places[::2] = np.pi * np.rint(places[::2] / np.pi) + 1e-3 * np.arange(1, n + 1)
-    return places
+    aside = 1e-3 * np.arange(1, n + 1)
+    places[::2] = np.pi * np.rint(places[::2] / np.pi) + aside
+    # What hangs straight down and what stands straight up are looked for whatever the spread hits.
+    return np.concatenate([places, [aside, np.pi - aside]])
 
 
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -92,6 +94,8 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     n = len(system.coordinates)
     if near is None:
         starts = starts_of_a_search(n)
+        if system.position is not None:
+            starts = np.concatenate([starts, system.position[None, :]])
     else:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
