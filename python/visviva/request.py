@@ -41,7 +41,7 @@ if TYPE_CHECKING:
         TransformationName,
     )
 
-__all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished"]
+__all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished", "fixed_steps"]
 
 _Parameters = ParamSpec("_Parameters")
 _Request = TypeVar("_Request")
@@ -152,7 +152,7 @@ _RTOL = 1e-9
 
 
 @cache
-def _fixed_steps() -> frozenset[str]:
+def fixed_steps() -> frozenset[str]:
     """Names of the methods that choose no step."""
     return frozenset(method["name"] for method in _core.methods(rigid=True) if not method["adaptive"])
 
@@ -195,7 +195,7 @@ class PlanRequest:
             asked[name] = ready if value is default else check(name, value)
         if prepared["rigid"] is not None and self.record is _RECORDED:
             asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
-        if self.rtol != _RTOL and asked["method"] in _fixed_steps():
+        if self.rtol != _RTOL and asked["method"] in fixed_steps():
             raise InvalidInput(
                 "rtol",
                 f"{asked['method']} has a fixed step, dt, which nothing else changes: expected none, got {self.rtol}; "

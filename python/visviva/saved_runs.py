@@ -27,7 +27,7 @@ from visviva._progress import TIME, callback
 from visviva.errors import InvalidInput
 from visviva.io import load
 from visviva.plan import plan_as_dict
-from visviva.request import RunRequest, finished
+from visviva.request import RunRequest, finished, fixed_steps
 from visviva.status import Status
 from visviva.trajectory import Trajectory
 
@@ -188,11 +188,12 @@ def _run_part(
     before: list[dict[str, Any]],
     report: Report | None,
 ) -> Trajectory:
-    """One part; the method is named, so that all parts have the same."""
+    """One part; the method is named, so that all parts have the same, unless its equal steps are chosen here."""
     own = replace(request, t=part.times)
     asked = own.to_core(leg._keywords, leg._names)
     asked["end_only"] = False
-    if not plan["solution"].startswith("closed form"):
+    chosen_here = request.dt is None and plan["method"] in fixed_steps()
+    if not plan["solution"].startswith("closed form") and not chosen_here:
         asked["method"] = plan["method"]
     asked["events"] = _left_of(asked["events"], before)
     if request.max_steps is not None:

@@ -27,6 +27,12 @@ def rigid() -> vv.Scene:
     return vv.Scene(body, vv.UniformField([0.0, 0.0, -1.0]))
 
 
+def pivoted() -> vv.Scene:
+    """A brick that hangs from a point: torques turn it, in equal steps that the scene chooses."""
+    body = vv.RigidBody(2.0, moments=[1.0, 1.2, 1.5], pivot=[0.0, 0.2, 0.0], angular_velocity=[0.1, 3.0, 0.1])
+    return vv.Scene(body, vv.UniformField([0.0, 0.0, -9.81]))
+
+
 def figure() -> vv.Scene:
     return vv.problems.figure_eight().scene
 
@@ -44,6 +50,7 @@ CASES: dict[str, tuple[Callable[[], vv.Scene], dict[str, Any]]] = {
     "collisions": (spheres, {"method": "leapfrog", "dt": 0.01, "collisions": "bounce"}),
     "merged": (spheres, {"method": "leapfrog", "dt": 0.01, "collisions": "merge"}),
     "rigid": (rigid, {"method": "leapfrog", "dt": 0.01}),
+    "rigid, in steps chosen by the scene": (pivoted, {}),
     "closed form": (lambda: vv.problems.kepler(e=0.5).scene, {}),
 }
 FIXED = [name for name, (_, how) in CASES.items() if "dt" in how and "collisions" not in how]
