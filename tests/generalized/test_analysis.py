@@ -83,6 +83,31 @@ def test_a_pendulum_that_goes_over_the_top(speed: float) -> None:
     assert out.position[-1, 0] == pytest.approx(-2 * np.pi, rel=1e-13)
 
 
+@pytest.mark.parametrize("exponent", range(2, 16))
+@pytest.mark.parametrize("moving", [False, True])
+def test_periods_beside_a_separatrix_are_right_or_refused(exponent: int, moving: bool) -> None:
+    """4 K(sin²(θ₀/2)) at θ₀ = π − 10⁻ⁿ as a float has it: what rounding of the energy does grows as 10²ⁿ."""
+    start = np.pi - 10.0**-exponent
+    with mpmath.workdps(50):
+        half = mpmath.mpf(start) / 2
+        period = 4 * mpmath.ellipk(mpmath.sin(half) ** 2)
+        speed = float(2 * mpmath.sin(half))
+    system = PENDULUM.at(position=[0.0], velocity=[speed]) if moving else PENDULUM.at(position=[start])
+    if exponent <= 5 and not moving:
+        # The energy is rounded by 2e-16, and 1/2 of the square of the distance is left to the top.
+        assert system.period() == pytest.approx(float(period), rel=1e-14 + 4e-16 * 10.0 ** (2 * exponent) / 10)
+        return
+    try:
+        found = system.period()
+    except vv.InvalidInput:
+        with pytest.raises(vv.InvalidInput, match="standing still"):
+            system.period()
+        return
+    # Of a motion that is known by its speed, what the rounding of that makes, too.
+    known = 1e-16 * 10.0 ** (2 * exponent) if moving else 0.0
+    assert found == pytest.approx(float(period), rel=2e-6 + known)
+
+
 @pytest.mark.parametrize("kept", ["plane_pendulum_k0.999", "plane_pendulum_k0.999_float"])
 def test_a_pendulum_near_the_top(kept: str) -> None:
     """θ = 2 asin(k cd(t | k²)) at k = 0.999, up to t = 1000; of a decimal k with what its rounding does."""

@@ -29,6 +29,10 @@ const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 /// What differs by less than this part of its size after a turn is the same: turns as 2π have fifteen digits, and places may
 /// have lost some.
 const REPEATS: f64 = 1e-9;
+/// A period of which rounding leaves less than six digits is not told.
+const UNKNOWN: f64 = 1e-6;
+/// How a slope changes at a turning point is told by one this part of a panel beside it.
+const BESIDE: f64 = 1e-3;
 /// Where less than this part of the greatest kinetic energy is left, it is counted from the turning point.
 const NEAR_AN_END: f64 = 0.25;
 
@@ -171,6 +175,7 @@ impl OneFreedom {
         }
         let pieces = self.pieces_of_a_swing(&panels, start);
         let [time, action] = quadrature::integral(self, &pieces)?;
+        self.refuse_near_a_separatrix(&panels, start, 2.0 * time)?;
         Ok(Oscillation { turning: (low, high), period: 2.0 * time, action: action / PI })
     }
 
@@ -193,6 +198,36 @@ impl OneFreedom {
             _ => Piece::inner(panel, &known[index..]),
         };
         panels.iter().enumerate().map(piece).collect()
+    }
+
+    /// Refuses a motion that turns back so near to where it would stand still that the rounding of its energy changes the time
+    /// that it takes there. With a slope s that changes by k along the way, the time goes as ln(s) √(m/k), and s as the root
+    /// of the energy that is left to the top.
+    fn refuse_near_a_separatrix(&mut self, panels: &[Panel], start: usize, period: f64) -> Result<()> {
+        let [Some(first), Some(last)] = [panels.first(), panels.last()] else { return Ok(()) };
+        let known = way::energies(panels, start, (self.kinetic, self.kinetic));
+        let ends = [(first.from, first.to, known[0].1), (last.to, last.from, known[panels.len()].1)];
+        for (end, inward, of) in ends {
+            // Where the motion begins at rest it turns back whatever its energy is.
+            if end == self.start {
+                continue;
+            }
+            let beside = end + BESIDE * (inward - end);
+            let [_, mass, slope] = self.values(core::array::from_fn(|k| if k == 0 { end } else { beside }));
+            let change = ((slope[1] - slope[0]) / (beside - end)).abs();
+            let rounding = f64::EPSILON * of;
+            let unknown = rounding * (change * mass[0]).sqrt() / (slope[0] * slope[0] * period);
+            if unknown > UNKNOWN {
+                return Err(Error::invalid(
+                    "position",
+                    format!(
+                        "the motion comes so near to standing still, at {end}, that the last digit of its energy \
+                         changes its period by a part of {unknown:.0e}: it is on a separatrix, but for rounding"
+                    ),
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The time in which the coordinate goes on by `turn`, and ∫ p dq / 2π over it, of a motion that never turns back.

@@ -110,6 +110,17 @@ fn trajectories_are_those_of_two_hundred_bits() {
     }
 }
 
+/// Of links in one line the first alone turns, and the others by rounding at first: no step is chosen by that.
+#[test]
+fn links_in_one_line_take_steps_as_others_do() {
+    let model = chain(10);
+    let y0: Vec<f64> = (0..20).map(|i| if i < 10 { 0.5 } else { 0.0 }).collect();
+    for (end, most) in [(1e-3, 20), (1.0, 60)] {
+        let steps = reached(&model, &y0, &[9.81], end).steps;
+        assert!(steps <= most, "{steps} steps to {end}");
+    }
+}
+
 /// The mass matrix of a chain is found on the graph: constant where it is, and no operation is left over.
 #[test]
 fn a_double_pendulum_takes_few_operations() {

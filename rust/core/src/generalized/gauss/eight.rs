@@ -8,6 +8,7 @@ use super::columns::{advance, found};
 use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
+use super::rounding::{HARDLY, Rounding};
 use super::told::{astray, felt, led, led_to, missed};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
@@ -29,6 +30,7 @@ use std::sync::Arc;
 pub struct GaussEight {
     table: &'static Table,
     ending: Ending,
+    rounding: Rounding,
     form: Form,
     machine: Blocks<AT_ONCE>,
     columns: Columns,
@@ -67,6 +69,7 @@ impl GaussEight {
         Self {
             table: method.table,
             ending: Ending::of(method.table),
+            rounding: Rounding::of(method.table),
             form,
             machine: Blocks::new(code, parameters),
             columns: Columns::new(evaluated),
@@ -111,10 +114,18 @@ impl GaussEight {
         self.columns.rates.copy_from_slice(&self.columns.guess);
     }
 
-    /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds.
+    /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
+    /// rounding explains is nothing.
     fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
         let mut most = Lanes::zero();
         let Columns { rates, guess, scales, .. } = &self.columns;
+        let size = |rates| astray(rates, &NOTHING, self.table.stages);
+        let largest = rates.iter().map(size).fold(Lanes::zero(), |largest, size| size.max(largest));
+        let mut rounding = largest;
+        for (lane, pace) in self.paces.iter().enumerate() {
+            let steps = (self.length.0[lane], h.0[lane]);
+            rounding.0[lane] *= self.rounding.astray(self.table, pace.kept, steps);
+        }
         for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
             let mut away = astray(rates, guess, self.table.stages);
             for (lane, pace) in self.paces.iter().enumerate() {
@@ -122,6 +133,8 @@ impl GaussEight {
                     away.0[lane] = self.table.leading(|k| rates[k].0[lane]);
                 }
             }
+            let hardly_moves = size(rates).less_equal(largest * Lanes::splat(HARDLY));
+            let away = Lanes::select(away.less_equal(rounding).and(hardly_moves), Lanes::zero(), away);
             most = (away * h.abs() * scale).max(most);
         }
         most

@@ -7,6 +7,7 @@
 use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
+use super::rounding::{HARDLY, Rounding};
 use super::step::{Iterated, Stages, Work, advance, found, largest, led};
 use super::{Method, Table};
 use crate::error::{Error, Result};
@@ -28,10 +29,16 @@ pub(super) fn no_convergence(h: f64) -> String {
     format!("the stages of a step of {h:e} do not converge; take a smaller dt")
 }
 
+/// The greatest of so many numbers, without their signs; a NaN counts as infinite.
+fn greatest(stages: usize, of: impl Fn(usize) -> f64) -> f64 {
+    largest(Lanes(core::array::from_fn(|k| if k < stages { of(k).abs() } else { 0.0 })))
+}
+
 /// A collocation method at work on one trajectory.
 pub struct GaussStep {
     table: &'static Table,
     ending: Ending,
+    rounding: Rounding,
     form: Form,
     machine: Machine<Lanes>,
     stages: Stages,
@@ -67,6 +74,7 @@ impl GaussStep {
         Self {
             table: method.table,
             ending: Ending::of(method.table),
+            rounding: Rounding::of(method.table),
             form,
             machine,
             stages: Stages::new(evaluated),
@@ -116,18 +124,23 @@ impl GaussStep {
         iterated
     }
 
-    /// How far the polynomial of the step before leads astray; in the first step, how much its last term adds.
+    /// How far the polynomial of the step before leads astray; in the first step, how much its last term adds. What rounding
+    /// explains is nothing.
     fn smoothness(&self, h: f64) -> f64 {
+        let stages = self.table.stages;
+        let rates = self.stages.rates.iter();
+        let largest_rate = rates.fold(0.0, |most, rates| Real::max(greatest(stages, |k| rates.0[k]), most));
+        let rounding = self.rounding.astray(self.table, self.pace.kept, (self.length, h)) * largest_rate;
         let mut most = 0.0;
         for (i, rates) in self.stages.rates.iter().enumerate() {
+            let guess = &self.stages.guess[i];
             let astray = if self.pace.kept == 0 {
                 self.table.leading(|k| rates.0[k])
             } else {
-                let guess = &self.stages.guess[i];
-                largest(Lanes(core::array::from_fn(|k| {
-                    if k < self.table.stages { (rates.0[k] - guess.0[k]).abs() } else { 0.0 }
-                })))
+                greatest(stages, |k| rates.0[k] - guess.0[k])
             };
+            let hardly_moves = greatest(stages, |k| rates.0[k]) <= HARDLY * largest_rate;
+            let astray = if hardly_moves && astray <= rounding { 0.0 } else { astray };
             let delta = astray * h.abs() * self.stages.scales[i];
             most = if delta > most { delta } else { most };
         }
@@ -141,8 +154,7 @@ impl GaussStep {
         let mut most = 0.0;
         for (rates, scale) in self.stages.rates.iter().zip(&self.stages.scales) {
             let beside = if second_order { 0.0 } else { rates.0[0] };
-            let change = |k: usize| if k < self.table.stages { (rates.0[k] - beside).abs() } else { 0.0 };
-            let felt = largest(Lanes(core::array::from_fn(change))) * h.abs() * scale;
+            let felt = greatest(self.table.stages, |k| rates.0[k] - beside) * h.abs() * scale;
             most = if felt <= most { most } else { felt };
         }
         if second_order { most } else { most.sqrt() }

@@ -248,8 +248,7 @@ impl Plan {
             Scheme::Embedded(_) | Scheme::Taylor(_) if !self.events.is_empty() => {
                 "events are looked for step by step"
             }
-            Scheme::Embedded(_) | Scheme::Taylor(_) => "no closed form applies, or a method was named",
-            _ => "the method was named",
+            _ => "no closed form applies, or a method was named",
         };
         match self.solutions.counts()[..] {
             [(Some(form), _)] => (format!("closed form: {}", form.name), form.reason.to_owned()),

@@ -1,0 +1,52 @@
+//! How far rounding leads the polynomials of steps astray.
+//!
+//! The one idea: a polynomial through the stages of one step goes on far beyond them in the next, and there the rounding of each
+//! rate counts as many times as the polynomial through 1 at it and 0 at the others has grown. Rates that are found together, as
+//! by a solution of linear equations, are rounded by the largest of them; what one that hardly moves beside it is led astray by
+//! no more than that, tells nothing of the motion.
+
+use super::Table;
+
+/// By what rates are rounded, as a part of the largest.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// What has less than this part of the largest rate hardly moves beside it.
+pub(super) const HARDLY: f64 = 1e-3;
+
+/// Of a method.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounding {
+    /// In a first step, of which the last term of the polynomial is looked at.
+    first: f64,
+    /// In a step as long as the one before it.
+    equal: f64,
+}
+
+impl Rounding {
+    /// Of a method.
+    pub(super) fn of(table: &Table) -> Self {
+        let first = table.leading(|k| 1.0_f64.copysign(table.weights.0[k]));
+        Self { first: ROUNDING * first, equal: ROUNDING * amplified(table, 1.0) }
+    }
+
+    /// So many times the largest rate a stage is led astray by rounding, at most, in a step of length `h` after so many kept
+    /// ones, the last of length `last`.
+    pub(super) fn astray(&self, table: &Table, kept: u64, (last, h): (f64, f64)) -> f64 {
+        if kept == 0 {
+            self.first
+        } else if h == last {
+            self.equal
+        } else {
+            ROUNDING * amplified(table, h / last)
+        }
+    }
+}
+
+/// How many times a rounding counts at the last stage of a next step that is so many times as long.
+fn amplified(table: &Table, ratio: f64) -> f64 {
+    let nodes = &table.c.0[..table.stages];
+    let x = 1.0 + nodes[table.stages - 1] * ratio;
+    let product = nodes.iter().fold(1.0, |product, c| product * (x - c));
+    let terms = nodes.iter().zip(&table.weights.0).map(|(c, weight)| (weight / (x - c)).abs());
+    terms.fold(0.0, |sum, term| sum + term) * product
+}
