@@ -100,3 +100,21 @@ def test_hamiltons_equations_have_further_forces() -> None:
     assert str(damped.equations).splitlines() == ["Hamilton's equations", "  x' = p", "  p' = -b*p - x"]
     assert r"\dot{p} &= - b p - x" in damped.equations._repr_latex_()
     assert str(pickle.loads(pickle.dumps(damped.equations))) == str(damped.equations)
+
+
+def test_names_that_meet_are_told_apart() -> None:
+    """Parameters called as momenta and multipliers usually are stay themselves; the others get names of their own."""
+    weight, slope = sp.Symbol("lambda_1"), sp.Symbol("p_x")
+    x, y = vv.coordinate("x"), vv.coordinate("y")
+    free = (x.diff(vv.time) ** 2 + y.diff(vv.time) ** 2) / 2
+    held = vv.Lagrangian(
+        free - weight * x, [x, y], parameters={weight: 2.0}, constraints=[x**2 + y**2 - 1], position=[1.0, 0.0]
+    )
+    assert "x:  lambda_1 + x'' = 2*lambda_1_*x" in str(held.equations)
+    falling = vv.Lagrangian(x.diff(vv.time) ** 2 / 2 - slope * x, [x], parameters={slope: 2.0})
+    assert "p_x_ = x'" in str(falling.equations)
+    assert str(falling.hamiltonian().equations).splitlines()[1:] == ["  x' = p_x_", "  p_x_' = -p_x"]
+    # The motion is that of the parameter.
+    assert falling.at(position=[1.0], velocity=[0.0]).hamiltonian().run(t=1.0).position[-1, 0] == pytest.approx(
+        0.0, abs=1e-15
+    )

@@ -10,7 +10,7 @@ import numpy as np
 
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._source import Source, _label
-from visviva.generalized._symbolic import sympy, time
+from visviva.generalized._symbolic import free_name, sympy, time
 from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
@@ -43,11 +43,11 @@ def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
         raise InvalidInput(error.argument, f"{error.message}; legendre_transform() evaluates it by numbers") from None
     symbols = source.symbols
     if symbols is not None:
-        sp = sympy()
+        sp, taken = sympy(), {*source.names, *source.parameters}
         if to_hamiltonian:
-            second = tuple(sp.Symbol(f"p_{name}") for name in source.names)
+            second = tuple(sp.Symbol(free_name(f"p_{name}", taken)) for name in source.names)
         elif any(isinstance(each, sp.Symbol) for each in symbols[0]):
-            second = tuple(sp.Symbol(f"v_{name}") for name in source.names)
+            second = tuple(sp.Symbol(free_name(f"v_{name}", taken)) for name in source.names)
         else:
             second = tuple(each.diff(time._sympy_()) for each in symbols[0])
         symbols = (symbols[0], second, symbols[2])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.generalized._calculus import Calculus
-from visviva.generalized._symbolic import sympy, time
+from visviva.generalized._symbolic import free_name, sympy, time
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -186,8 +186,10 @@ def euler_lagrange(system: Lagrangian) -> EquationsOfMotion:
         rows = c.with_derivatives(c.adopted(description["nodes"], description[kind]))
         held += c.to_sympy([row[0] for row in rows])
         reactions += along(rows, first)
+    taken = {*names, *system.parameters}
     for number, row in enumerate(reactions, start=1):
-        acting = [force + sp.Symbol(f"lambda_{number}") * each for force, each in zip(acting, row, strict=True)]
+        multiplier = sp.Symbol(free_name(f"lambda_{number}", taken))
+        acting = [force + multiplier * each for force, each in zip(acting, row, strict=True)]
     left = [
         sum(m * x for m, x in zip(by_speed[i], a, strict=True))
         + sum(m * x for m, x in zip(by_place[i], v, strict=True))
@@ -201,7 +203,10 @@ def euler_lagrange(system: Lagrangian) -> EquationsOfMotion:
         names,
         [sp.Eq(_shorter(sp, each), force, evaluate=False) for each, force in zip(left, acting, strict=True)],
         [sp.Eq(each, 0, evaluate=False) for each in held],
-        [sp.Eq(sp.Symbol(f"p_{name}"), each, evaluate=False) for name, each in zip(names, c.to_sympy(p), strict=True)],
+        [
+            sp.Eq(sp.Symbol(free_name(f"p_{name}", taken)), each, evaluate=False)
+            for name, each in zip(names, c.to_sympy(p), strict=True)
+        ],
         sp.Eq(sp.Symbol("h"), jacobi, evaluate=False),
         system.conserved,
         written,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from inspect import Parameter, signature
 from typing import Any
 
 from visviva._arrays import number
@@ -83,6 +84,8 @@ def described(
     for what, each in (("coordinates", names), ("parameters", keys)):
         if len(set(each)) < len(each):
             raise InvalidInput(what, f"expected different names, got {list(each)}")
+    if "t" in names:
+        raise InvalidInput("coordinates", "t is the time; give the coordinate another name")
     shared = [key for key in keys if key in names]
     if shared:
         raise InvalidInput("parameters", f"{shared[0]!r} is a coordinate; give the parameter another name")
@@ -178,6 +181,36 @@ def _parameter(sp: Any, key: Any, function: Any) -> Any:
     return named[0] if named else sp.Symbol(key)
 
 
+def _refuse_other_arguments(
+    argument: str, function: Callable[..., Any], second_name: str, parameters: tuple[str, ...]
+) -> None:
+    """Refuse what would be taken for something else, or what no parameter is given for.
+
+    Raises
+    ------
+    InvalidInput
+        By the name of the argument.
+    """
+    try:
+        taken = list(signature(function).parameters.values())
+    except (TypeError, ValueError):  # one that does not tell what it takes
+        return
+    placed = [each.name for each in taken if each.kind in (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)]
+    if placed[:1] == ["t"] and "t" not in placed[1:]:
+        raise InvalidInput(
+            argument,
+            f"expected a function f(position, {second_name}, t), in this order, got f({', '.join(placed)}); "
+            "functions of (t, ...) are those of visviva.events.function",
+        )
+    named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+    needed = [each.name for each in taken if each.default is Parameter.empty and each.kind in named]
+    for name in needed:
+        if name not in placed[:3] and name not in parameters:
+            raise InvalidInput(
+                "parameters", f"expected a value of {name!r}, which {argument} takes; pass parameters={{{name!r}: ...}}"
+            )
+
+
 def calls(
     nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...], second_name: str
 ) -> Callable[[str, Any], int]:
@@ -193,6 +226,7 @@ def calls(
         first = expression_array(expression("variable", float(i)) for i in range(n))
         second = expression_array(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
+        _refuse_other_arguments(argument, function, second_name, parameters)
         check_call(argument, function, ("position", second_name, "t"), parameters)
         return recorded(
             nodes,

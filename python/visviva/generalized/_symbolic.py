@@ -10,11 +10,11 @@ from visviva.errors import InvalidInput
 from visviva.generalized._nodes import FUNCTIONS, SWITCH, WIDTH, Node, Nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from sympy import Symbol
 
-__all__ = ["Symbols", "coordinate", "named_symbols", "symbols_of_names", "sympy", "time", "trees"]
+__all__ = ["Symbols", "coordinate", "free_name", "named_symbols", "symbols_of_names", "sympy", "time", "trees"]
 
 #: Symbols of coordinates, of velocities or momenta, and of parameters.
 _Groups: TypeAlias = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
@@ -32,6 +32,13 @@ _INSTEAD = {
 def sympy(argument: str = "L") -> Any:
     """Give the module, or say how to get it, naming the argument that needs it."""
     return needed("sympy", argument, "symbolic", "pass a function of (position, velocity, t)")
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Give a name that is nobody else's: p_x, or p_x_ beside a parameter of that name."""
+    while name in taken:
+        name += "_"
+    return name
 
 
 class _Time:

@@ -10,7 +10,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._flow import Flow
 from visviva.generalized._runs import Runs
-from visviva.generalized._symbolic import sympy, trees
+from visviva.generalized._symbolic import free_name, sympy, trees
 from visviva.generalized._trajectory import check_run
 
 if TYPE_CHECKING:
@@ -113,8 +113,9 @@ class GeneralizedSystem(Runs, Flow):
         if self._source.symbols is not None:
             return self._source.symbols[0], self._source.symbols[1]
         sp, letter = sympy(), "v" if self._source.kind == "lagrangian" else "p"
+        taken = {*self.coordinates, *self.parameters}
         first = tuple(sp.Symbol(name) for name in self.coordinates)
-        return first, tuple(sp.Symbol(f"{letter}_{name}") for name in self.coordinates)
+        return first, tuple(sp.Symbol(free_name(f"{letter}_{name}", taken)) for name in self.coordinates)
 
     def evaluate(self, *expressions: Formula, trajectory: GeneralizedTrajectory | None = None) -> NDArray[np.float64]:
         """Values of further expressions, at the start or along a trajectory.
