@@ -20,7 +20,7 @@ use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::Scheme;
 use crate::ode::norm::Norm;
-use crate::ode::run::{Ending, smallest_step};
+use crate::ode::run::{Ending, is_lost, smallest_step};
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::{Form, System};
@@ -340,6 +340,10 @@ impl<'a> Abreast<'a> {
                 continue;
             }
             solution.evaluations += cost.kept;
+            if is_lost(outcome.h.0[lane], *smallest) && !outcome.finished.lane(lane) {
+                self.end(lane, Ending::StepTooSmall, None, ticker);
+                continue;
+            }
             if !finite {
                 self.end(lane, Ending::NotFinite, None, ticker);
                 continue;

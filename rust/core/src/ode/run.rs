@@ -203,6 +203,9 @@ fn steps<T: Trial<f64>>(
                 return Ok(Ending::StepTooSmall);
             }
         };
+        if is_lost(outcome.h, smallest) && !outcome.finished {
+            return Ok(Ending::StepTooSmall);
+        }
         if !trial.next().all().0.iter().all(|y| y.is_finite()) {
             return Ok(Ending::NotFinite);
         }
@@ -228,6 +231,12 @@ fn steps<T: Trial<f64>>(
             return Ok(Ending::Finished);
         }
     }
+}
+
+/// Whether a step that was taken is lost in the rounding of the time, as those are that a method chooses whatever the clock
+/// says. Nodes that are numbers may make the shortest step a little shorter.
+pub(crate) fn is_lost(h: f64, smallest: f64) -> bool {
+    h.abs() < 0.5 * smallest
 }
 
 /// The shortest step from a time.

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use visviva_core::generalized::abreast::{solve_together, together};
 use visviva_core::generalized::run::{Integrator, Request, Solution, solve};
 use visviva_core::generalized::{discrete, gauss};
+use visviva_core::memory::check;
 use visviva_core::numerics::lanes::WIDTH;
 use visviva_core::ode::run::Ending;
 use visviva_core::ode::{Method, Scheme};
@@ -133,6 +134,7 @@ pub(super) fn run<'py>(
     let (parameters, _) = copied("parameters", parameters, [Some(members), Some(model.source.parameters)])?;
     let exceptions = Raised::default();
     let request = asked.request(py, of, &exceptions)?;
+    check_memory(&request, members, model.numbers()).map_err(|error| raised(py, error))?;
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
     // A function of Python is called on the thread of the run.
     let threads = if asked.events.iter().any(Sought::calls) { 1 } else { threads };
@@ -171,6 +173,15 @@ pub(super) fn run<'py>(
     let result = collected(py, &solutions, numbers)?;
     result.set_item("interrupted", interrupted)?;
     Ok(result)
+}
+
+/// Refuses what there is no memory for: each copy's rows, and the columns of all of them.
+fn check_memory(request: &Request, members: usize, numbers: usize) -> Result<()> {
+    let times = request.outputs.as_ref().map_or(0, Vec::len);
+    let bytes =
+        times.checked_mul(members).and_then(|rows| rows.checked_mul(2 * (numbers + 1) * size_of::<f64>()));
+    let what = format!("{times} times of states of {numbers} numbers in {members} copies");
+    check("t", &what, bytes, "ask for fewer times, or run fewer copies at a time")
 }
 
 /// Into how many parts of its time the progress of a single run is counted.

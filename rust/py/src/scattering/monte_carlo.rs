@@ -8,12 +8,12 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::Result;
-use visviva_core::memory::collected;
+use visviva_core::memory::{check, collected};
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Channel, Factor, Mixture, Probability, Profile, Quantity, Spread, Strata, Tally, events, expected,
-    monte_carlo as simulate,
+    Beam, Channel, Event, Factor, Mixture, Probability, Profile, Quantity, Spread, Strata, Tally, events,
+    expected, monte_carlo as simulate,
 };
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -277,6 +277,11 @@ pub(crate) fn scattering_events<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<((Integers<'py>, Integers<'py>), Column<'py>)> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+    // A list of events that grows is twice as long for a moment, and their columns come beside it.
+    let each = 2 * size_of::<Event>() + (6 + Quantity::ALL.len()) * size_of::<f64>();
+    let bytes = usize::try_from(n_events).ok().and_then(|count| count.checked_mul(each));
+    let cure = "ask for fewer at a time, or write them to a file by to=";
+    check("n_events", &format!("{n_events} events"), bytes, cure).map_err(|error| raised(py, error))?;
     let beam = beam.taken(py)?;
     let ((components, channels), values) = compute(py, n_events, progress.as_ref(), |ticker| {
         ticker.control().count_whole(n_events);
