@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import NoReturn
 
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
@@ -150,6 +151,52 @@ class EventTable(Lines["EventColumnName"]):
     velocity: NDArray[np.float64]
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
+
+    def plot(
+        self, component: Literal["x", "y", "z"] | None = None, *, body: int | None = None, ax: Axes | None = None
+    ) -> Axes:
+        """Draw a body's place against its velocity at the events: of those of a plane, a Poincaré section of the run.
+
+        Units: those of the run.
+
+        Parameters
+        ----------
+        component : {"x", "y", "z"}, optional
+            Which; by default that in which the places extend most.
+        body : int, optional
+            Of which body; the only one if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            A color for each copy of an ensemble, else for each event that was looked for; `of` gives those of one.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is no event, it is not said of which of several bodies, an argument is not one of these, or
+            matplotlib is not installed.
+
+        References
+        ----------
+        M. Hénon & C. Heiles, Astron. J. 69 (1964) 73.
+
+        Examples
+        --------
+        A rosette about a cluster, where it passes x = 0 on its way to larger x:
+
+        >>> import visviva as vv
+        >>> star = vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.5, 0.0]])
+        >>> scene = vv.Scene(star, vv.CentralField(vv.potentials.Plummer(-1.0, 0.5)))
+        >>> passes = vv.events.plane([0.0, 0.0, 0.0], normal=[1.0, 0.0, 0.0], direction=1)
+        >>> scene.run(t=200.0, events=[passes]).events.plot("y").get_ylabel()
+        'velocity, y'
+        """
+        from visviva._phase import plot_section
+
+        return plot_section(self, component, body, ax)
 
     def _exported(self, columns: EventColumnName | Sequence[EventColumnName] | None) -> Columns:
         known = self._names()
