@@ -116,6 +116,17 @@ def test_potentials_that_cannot_be_drawn_are_refused_with_a_cure(system: Any, po
         system.plot_effective_potential(position)
 
 
+def test_separatrices_look_alike_whatever_their_energies_are() -> None:
+    """Of a bead on a turning hoop one passes the bottom, at −g, and one the top, at g."""
+    hoop = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + 16.0 * np.sin(q[0]) ** 2) / 2 + 9.81 * np.cos(q[0]), ["theta"], position=[0.3]
+    )
+    axes = hoop.plot_phase_portrait((-4.0, 4.0), (-6.0, 6.0), points=80)
+    strong = [lines for lines in axes.collections if np.allclose(lines.get_linewidths(), 1.4)]
+    assert {round(float(lines.levels[0]), 6) for lines in strong} == {-9.81, 9.81}
+    assert all(dashes is None for lines in strong for _, dashes in lines.get_linestyles())
+
+
 def test_the_portrait_has_its_first_name_too() -> None:
     calls = (SWING.phase_portrait, SWING.plot_phase_portrait)
     levels = [call((-4, 4), (-8, 8), points=40).collections[0].levels for call in calls]

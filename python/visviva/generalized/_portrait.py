@@ -64,7 +64,8 @@ def plot_phase_portrait(
         # Lines through one that is outside may come by.
         through = other.at(position=rest.position, momentum=rest.momentum).energy
         if finite.size and finite.min() < through < finite.max():
-            ax.contour(q, p, energy, levels=[through], colors="black", linewidths=1.4)
+            # Of one color, lines of negative energies would be dashed by themselves.
+            ax.contour(q, p, energy, levels=[through], colors="black", linewidths=1.4, linestyles="solid")
     ax.set_xlabel(system.coordinates[0])
     ax.set_ylabel(f"momentum of {system.coordinates[0]}")
     return ax

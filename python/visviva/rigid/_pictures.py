@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
-from visviva._style import FRAME, VERMILION, legend_beside, legend_within, set_box
+from visviva._style import VERMILION, legend_beside, legend_within, set_box
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
@@ -58,7 +58,7 @@ def plot_polhode(path: Polhode, ax: Axes | None) -> Figure:
     figure = _plotted(whole, "polhode", {"polhode": polhode}, ax)
     axes: Any = figure.axes[-1] if ax is None else ax
     for line in _separatrices(path.moments):
-        axes.plot(*line, linewidth=0.8, linestyle="-", color=FRAME, zorder=1)
+        axes.plot(*line, linewidth=0.8, linestyle="-", color="0.4", zorder=1)
     return figure
 
 
