@@ -27,6 +27,9 @@ __all__ = ["EventTable", "Lines"]
 
 Name = TypeVar("Name", bound=str)
 
+# What a table has beside its columns.
+_ABOUT = ("definitions", "coordinates")
+
 
 @known_keywords
 class Lines(Exported[Name], Shown):
@@ -43,17 +46,17 @@ class Lines(Exported[Name], Shown):
     _row_axes = ("event",)
 
     @classmethod
-    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> Self:
+    def _made(cls, found: dict[str, NDArray[Any]], **about: tuple[Any, ...]) -> Self:
         for array in found.values():
             array.setflags(write=False)
         table: Any = cls
-        made: Self = table(**found, definitions=definitions)
+        made: Self = table(**found, **about)
         return made
 
     @classmethod
     def _names(cls) -> list[str]:
         table: Any = cls
-        return [name for name in table.__slots__ if name != "definitions"]
+        return [name for name in table.__slots__ if name not in _ABOUT]
 
     def __len__(self) -> int:
         return len(self.t)
@@ -77,7 +80,8 @@ class Lines(Exported[Name], Shown):
             raise InvalidInput(
                 "index", f"expected a slice, a mask or numbers of lines, got {chosen!r}: {error}"
             ) from None
-        return self._from_core({name: getattr(self, name)[rows] for name in self._names()}, self.definitions)
+        about = {name: getattr(self, name) for name in _ABOUT if hasattr(self, name)}
+        return self._made({name: getattr(self, name)[rows] for name in self._names()}, **about)
 
     def __iter__(self) -> NoReturn:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")

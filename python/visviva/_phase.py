@@ -1,6 +1,7 @@
-"""Pictures in the phase space of bodies: a component of their places against that of their velocities.
+"""Pictures in phase space: of bodies a component of their places against that of their velocities.
 
-The one idea: along a run it is a line for each body, and at the events of a run points, a Poincaré section of it.
+The one idea: along a run it is a line for each body, and at the events of a run points, a Poincaré section of it; in
+generalized coordinates these are of a coordinate and its momentum.
 """
 
 from __future__ import annotations
@@ -21,10 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from visviva._event_table import EventTable
+    from visviva._event_table import EventTable, Lines
+    from visviva.generalized._events import GeneralizedEventTable
     from visviva.trajectory import Trajectory
 
-__all__ = ["plot_phase", "plot_section"]
+__all__ = ["plot_generalized_section", "plot_phase", "plot_section"]
 
 
 def plot_phase(run: Trajectory, component: object, bodies: object, ax: Axes | None) -> Axes:
@@ -50,19 +52,36 @@ def plot_section(table: EventTable, component: object, body: object, ax: Axes | 
     if body is None and bodies != 1:
         raise InvalidInput("body", f"say of which of {count(bodies, 'body', 'bodies')}, as body=0")
     one = 0 if body is None else whole_number("body", body, 0, bodies - 1)
+    at = _component(component, table.position[:, [one]])
+    axes = _points(table, table.position[:, one, at], table.velocity[:, one, at], ax)
+    _label(axes, at)
+    return axes
+
+
+def plot_generalized_section(table: GeneralizedEventTable, name: object, ax: Axes | None) -> Axes:
+    """As `GeneralizedEventTable.plot`."""
+    names = list(table.coordinates)
+    chosen = names[-1] if name is None else one_of("name", name, names)
+    at = names.index(chosen)
+    axes = _points(table, table.position[:, at], table.momentum[:, at], ax)
+    axes.set(xlabel=chosen, ylabel=f"momentum of {chosen}")
+    return axes
+
+
+def _points(table: Lines[Any], x: NDArray[np.float64], v: NDArray[np.float64], ax: Axes | None) -> Axes:
+    """A point for each event, of a color for each copy, or of a single run for each event that was looked for."""
     if not len(table):
         raise InvalidInput("plot", "expected at least one event, got none: run longer, or look for another event")
-    places, rates = table.position[:, [one]], table.velocity[:, [one]]
-    at = _component(component, places)
     axes = axes_or_new(ax)
     copies = len(np.unique(table.member)) > 1
     of: NDArray[np.int64] = table.member if copies else table.which
-    for each in np.unique(of):
-        rows = of == each
-        name = None if copies else f"{each} {table.definitions[each].kind}"
-        axes.plot(places[rows, 0, at], rates[rows, 0, at], ".", markersize=3, label=name)
-    _label(axes, at)
-    if not copies and 1 < len(axes.lines) <= LEGEND:
+    kinds = [event.kind for event in table.definitions]
+    each = np.unique(of)
+    for one in each:
+        # Of files of before definitions were kept there are none.
+        label = f"{one} {kinds[one]}" if not copies and one < len(kinds) else None
+        axes.plot(x[of == one], v[of == one], ".", markersize=3, label=label)
+    if not copies and kinds and 1 < len(each) <= LEGEND:
         legend_beside(axes)
     return axes
 
@@ -72,6 +91,8 @@ def _component(component: object, places: NDArray[np.float64]) -> int:
     letters = [str(each) for each in AXES["component"]]
     if component is not None:
         return letters.index(one_of("component", component, letters))
+    if not len(places):
+        return 0
     low, high = np.fmin.reduce(places, axis=(0, 1)), np.fmax.reduce(places, axis=(0, 1))
     return int(np.argmax(np.nan_to_num(high - low)))
 

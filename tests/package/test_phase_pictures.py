@@ -1,6 +1,7 @@
 """Every picture of a course of mechanics is a method of what it is of, and shows what is computed elsewhere."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -160,6 +161,28 @@ def test_a_section_shows_the_events_and_nothing_else() -> None:
     assert len(drawn.lines) == 5  # a color for each copy
     assert drawn.get_legend() is None
     assert sum(len(line.get_xdata()) for line in drawn.lines) == len(many)
+    # Of files that are older than definitions.
+    bare = replace(both, definitions=())
+    assert len(bare.plot("x").lines) == 2
+
+
+def test_a_section_of_many_copies_is_that_of_each() -> None:
+    stars = vv.systems.henon_heiles().ensemble(position=[[0.0, 0.1], [0.0, 0.2]], momentum=[[0.4, 0.1], [0.4, 0.0]])
+    table = stars.run(t=60.0, events=[vv.events.coordinate("x", direction=1)]).events
+    axes = table.plot()  # y, the last
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("y", "momentum of y")
+    for copy, line in enumerate(axes.lines):
+        section = stars[copy].poincare("x", t=60.0)
+        found = np.column_stack([section.position[:, 1], section.momentum[:, 1]])
+        np.testing.assert_allclose(line.get_xydata(), found, atol=1e-9)
+    assert table.plot("x").get_xlabel() == "x"
+    assert table[:3].coordinates == table.of(0).coordinates == ("x", "y")
+    for call, words in (
+        (lambda: table.plot("z"), "name: expected one of"),
+        (table[:0].plot, "plot: expected at least one event"),
+    ):
+        with pytest.raises(vv.InvalidInput, match=words):
+            call()
 
 
 def test_pictures_in_phase_space_refuse_by_name() -> None:
