@@ -78,7 +78,7 @@ def third_law(position: ArrayLike, forces: ArrayLike, *, rtol: float = 1e-12) ->
     Raises
     ------
     visviva.InvalidInput
-        A force of a body on itself.
+        For a force of a body on itself.
 
     Notes
     -----

@@ -92,7 +92,7 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     Raises
     ------
     visviva.InvalidInput
-        A force between bodies.
+        For a force between bodies.
 
     References
     ----------

@@ -310,7 +310,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         Raises
         ------
         InvalidInput
-            For a coordinate that is not there.
+            For a coordinate that is not there, what are no axes, or if matplotlib is not installed.
 
         Examples
         --------
