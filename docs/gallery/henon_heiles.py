@@ -11,6 +11,5 @@ with plt.style.context(vv.plot_style()):
 for y, p_y in ((0.0, 0.1), (0.0, 0.2), (0.0, 0.3), (0.3, 0.0), (0.45, 0.0), (0.55, 0.0), (-0.2, 0.0), (-0.1, 0.0)):
     p_x = np.sqrt(2.0 * energy - p_y**2 - y**2 + 2.0 * y**3 / 3.0)
     system = vv.systems.henon_heiles(position=[0.0, y], momentum=[p_x, p_y])
-    points = system.poincare("x", t=1500.0)
-    ax.plot(points.position[:, 1], points.momentum[:, 1], ".", ms=2.0)
-ax.set(xlabel="y", ylabel="momentum of y", title="Hénon–Heiles, E = 1/8, where x passes 0 upwards")
+    system.poincare("x", t=1500.0).plot("y", ax=ax)
+ax.set(title="Hénon–Heiles, E = 1/8, where x passes 0 upwards")

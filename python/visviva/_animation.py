@@ -17,7 +17,7 @@ from visviva._arrays import number, whole_number
 from visviva._packages import needed
 from visviva._paths import path_text
 from visviva._style import COLORS, FRAME, legend_beside
-from visviva.errors import InvalidInput
+from visviva.errors import InvalidInput, MissingPackage
 from visviva.plot import chosen_bodies, directions, label_places, new_figure, set_ends
 
 if TYPE_CHECKING:
@@ -153,15 +153,36 @@ def _file(path: Any) -> Path:
     visviva.InvalidInput
         For another ending, or a writer that is not installed.
     """
-    writers = needed("matplotlib.animation", "plot", "plot").writers
     file = Path(path_text("path", path))
     if file.suffix not in _SUFFIXES:
         raise InvalidInput("path", f"expected a file ending in {', '.join(_SUFFIXES)}, got {str(path)!r}")
     if not file.parent.is_dir():
         raise InvalidInput("path", f"expected a file in a folder that exists, got {str(path)!r}")
-    if file.suffix == ".mp4" and not writers.is_available("ffmpeg"):
-        raise InvalidInput("path", "ffmpeg is not installed, which writes .mp4; give a .gif or .html")
+    if file.suffix == ".mp4":
+        _ffmpeg()
     return file
+
+
+def _ffmpeg() -> str:
+    """The program that writes .mp4: what matplotlib finds, or what the package imageio-ffmpeg brings.
+
+    Raises
+    ------
+    visviva.MissingPackage
+        If there is neither.
+    """
+    if needed("matplotlib.animation", "plot", "plot").writers.is_available("ffmpeg"):
+        found: str = needed("matplotlib", "plot", "plot").rcParams["animation.ffmpeg_path"]
+        return found
+    instead = "install ffmpeg itself, or give a .gif or .html, which need neither"
+    package = needed("imageio_ffmpeg", "path", "video", instead)
+    try:
+        brought: str = package.get_ffmpeg_exe()
+    except RuntimeError as error:  # of a system that it brings none for
+        raise MissingPackage(
+            "path", f"imageio-ffmpeg has no ffmpeg for this system, which writes .mp4: {instead}"
+        ) from error
+    return brought
 
 
 def _saved(animation: FuncAnimation, file: Path | None, fps: int) -> FuncAnimation:
@@ -169,8 +190,13 @@ def _saved(animation: FuncAnimation, file: Path | None, fps: int) -> FuncAnimati
         return animation
     if file.suffix == ".html":
         file.write_text(animation.to_jshtml(fps=fps), encoding="utf-8")
+    elif file.suffix == ".gif":
+        animation.save(file, writer="pillow", fps=fps, dpi=100)
     else:
-        animation.save(file, writer="pillow" if file.suffix == ".gif" else "ffmpeg", fps=fps, dpi=100)
+        from matplotlib import rc_context
+
+        with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+            animation.save(file, writer="ffmpeg", fps=fps, dpi=100)
     return animation
 
 

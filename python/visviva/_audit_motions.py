@@ -53,7 +53,7 @@ def impulse(
     --------
     Half a sine of height F and duration T gives 2 F T/π.
 
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> push = lambda t: np.stack([np.sin(np.pi * t / 0.5), 0 * t, 0 * t], axis=-1)
     >>> (vv.audit.impulse(push, (0.0, 0.5)) * np.pi).round(12).tolist()
     [1.0, 0.0, 0.0]
@@ -153,7 +153,7 @@ def rigidity(trajectory: Trajectory, pairs: Sequence[tuple[int, int]] | None = N
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> turning = vv.problems.lagrange_triangle()
     >>> out = turning.scene.run(t=np.linspace(0.0, turning.t_end, 9), method="dop853", rtol=1e-12)
     >>> bool(np.abs(vv.audit.rigidity(out)).max() < 1e-9)

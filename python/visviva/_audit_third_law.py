@@ -78,7 +78,7 @@ def third_law(position: ArrayLike, forces: ArrayLike, *, rtol: float = 1e-12) ->
     Raises
     ------
     visviva.InvalidInput
-        A force of a body on itself.
+        For a force of a body on itself.
 
     Notes
     -----
@@ -86,7 +86,7 @@ def third_law(position: ArrayLike, forces: ArrayLike, *, rtol: float = 1e-12) ->
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> across = np.zeros((2, 2, 3))
     >>> across[0, 1], across[1, 0] = [0.5, 0.25, 2.0], [-0.5, -0.25, -2.0]
     >>> audit = vv.audit.third_law([[0, 0, 0], [1.0, 2.0, -1.0]], across)

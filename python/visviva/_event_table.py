@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import NoReturn
 
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 __all__ = ["EventTable", "Lines"]
 
 Name = TypeVar("Name", bound=str)
+
+# What a table has beside its columns.
+_ABOUT = ("definitions", "coordinates")
 
 
 @known_keywords
@@ -42,17 +46,17 @@ class Lines(Exported[Name], Shown):
     _row_axes = ("event",)
 
     @classmethod
-    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> Self:
+    def _made(cls, found: dict[str, NDArray[Any]], **about: tuple[Any, ...]) -> Self:
         for array in found.values():
             array.setflags(write=False)
         table: Any = cls
-        made: Self = table(**found, definitions=definitions)
+        made: Self = table(**found, **about)
         return made
 
     @classmethod
     def _names(cls) -> list[str]:
         table: Any = cls
-        return [name for name in table.__slots__ if name != "definitions"]
+        return [name for name in table.__slots__ if name not in _ABOUT]
 
     def __len__(self) -> int:
         return len(self.t)
@@ -76,7 +80,8 @@ class Lines(Exported[Name], Shown):
             raise InvalidInput(
                 "index", f"expected a slice, a mask or numbers of lines, got {chosen!r}: {error}"
             ) from None
-        return self._from_core({name: getattr(self, name)[rows] for name in self._names()}, self.definitions)
+        about = {name: getattr(self, name) for name in _ABOUT if hasattr(self, name)}
+        return self._made({name: getattr(self, name)[rows] for name in self._names()}, **about)
 
     def __iter__(self) -> NoReturn:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")
@@ -150,6 +155,52 @@ class EventTable(Lines["EventColumnName"]):
     velocity: NDArray[np.float64]
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
+
+    def plot(
+        self, component: Literal["x", "y", "z"] | None = None, *, body: int | None = None, ax: Axes | None = None
+    ) -> Axes:
+        """Draw a body's place against its velocity at the events: of those of a plane, a Poincaré section of the run.
+
+        Units: those of the run.
+
+        Parameters
+        ----------
+        component : {"x", "y", "z"}, optional
+            Which; by default that in which the places extend most.
+        body : int, optional
+            Of which body; the only one if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            A color for each copy of an ensemble, else for each event that was looked for; `of` gives those of one.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is no event, it is not said of which of several bodies, an argument is not one of these, or
+            matplotlib is not installed.
+
+        References
+        ----------
+        M. Hénon & C. Heiles, Astron. J. 69 (1964) 73.
+
+        Examples
+        --------
+        A rosette about a cluster, where it passes x = 0 on its way to larger x:
+
+        >>> import visviva as vv
+        >>> star = vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.5, 0.0]])
+        >>> scene = vv.Scene(star, vv.CentralField(vv.potentials.Plummer(-1.0, 0.5)))
+        >>> passes = vv.events.plane([0.0, 0.0, 0.0], normal=[1.0, 0.0, 0.0], direction=1)
+        >>> scene.run(t=200.0, events=[passes]).events.plot("y").get_ylabel()
+        'velocity, y'
+        """
+        from visviva._phase import plot_section
+
+        return plot_section(self, component, body, ax)
 
     def _exported(self, columns: EventColumnName | Sequence[EventColumnName] | None) -> Columns:
         known = self._names()

@@ -92,7 +92,7 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     Raises
     ------
     visviva.InvalidInput
-        A force between bodies.
+        For a force between bodies.
 
     References
     ----------
@@ -100,7 +100,7 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> vv.audit.field(vv.Harmonic(k=2.0))(np.array([[1.0, 0.0, 0.0]])).tolist()
     [[-2.0, 0.0, 0.0]]
     """
@@ -158,7 +158,7 @@ def work(
     --------
     Not every field of places is conservative: (-y, x) does the work 2π R² around a circle.
 
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> circle = lambda s: np.stack([np.cos(2 * np.pi * s), np.sin(2 * np.pi * s), 0 * s], axis=-1)
     >>> round(vv.audit.work(lambda r: np.stack([-r[:, 1], r[:, 0], 0 * r[:, 2]], axis=-1), circle) / np.pi, 9)
     2.0
@@ -201,7 +201,7 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     Raises
     ------
     visviva.InvalidInput
-        A force between bodies, or a run that did not record velocities.
+        For a force between bodies, or a run that did not record velocities.
 
     Notes
     -----
@@ -214,7 +214,7 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> pull = vv.UniformField((0, 0, -10.0))
     >>> ball = vv.Scene(vv.Particles([2.0], [[0, 0, 0]], [[1.0, 0, 5.0]]), pull)
     >>> vv.audit.work_along(ball.run(t=np.linspace(0, 1, 5)), pull)[-1].tolist()
@@ -321,7 +321,7 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> places = np.random.default_rng(1).normal(size=(5, 3))
     >>> vv.audit.curl(vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=2.0)), places).conservative
     True

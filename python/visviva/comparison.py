@@ -294,7 +294,8 @@ def work_precision(
     Raises
     ------
     visviva.InvalidInput
-        By name; for a problem that has no reference at its end.
+        For what is no problem, one that has no reference at its end, a method that there is not or that the forces of
+        the scene do not allow, or a time or a number of repeats that is not positive.
 
     References
     ----------

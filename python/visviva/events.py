@@ -75,7 +75,8 @@ def distance(
     Raises
     ------
     visviva.InvalidInput
-        By name; whether the scene has the bodies is looked at when it is run.
+        For a distance that is not positive, one body twice, or a direction or an end that is none of these. Whether
+        the scene has the bodies is looked at when it is run.
 
     Examples
     --------
@@ -122,7 +123,8 @@ def plane(
     Raises
     ------
     visviva.InvalidInput
-        By name.
+        For three numbers that are none, a normal of length 0, what is no body, or a direction or an end that is none
+        of these. Whether the scene has the body is looked at when it is run.
 
     Examples
     --------
@@ -165,7 +167,8 @@ def apsis(
     Raises
     ------
     visviva.InvalidInput
-        By name.
+        For one body twice, a point that is not three numbers, or a direction or an end that is none of these. Whether
+        the scene has the bodies is looked at when it is run.
 
     Examples
     --------
@@ -209,7 +212,8 @@ def coordinate(
     Raises
     ------
     visviva.InvalidInput
-        By name; whether the system has the coordinate is looked at when it is run.
+        For what is no name of a coordinate, a value that is no number, or a direction or an end that is none of these.
+        Whether the system has the coordinate is looked at when it is run.
 
     Examples
     --------
@@ -250,7 +254,8 @@ def expression(
     Raises
     ------
     visviva.InvalidInput
-        By name; whether the core knows the expression is looked at when it is run.
+        For what is neither an expression nor a function, or a direction or an end that is none of these. Whether the
+        core knows the expression is looked at when it is run.
 
     Examples
     --------
@@ -293,7 +298,7 @@ def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int 
     Raises
     ------
     visviva.InvalidInput
-        By name.
+        For a value that is no number, or a direction or an end that is none of these.
 
     Examples
     --------
@@ -324,6 +329,7 @@ def function(
     Parameters
     ----------
     call : callable
+        ``call(t, position, velocity)``, which gives a number; an event is where that passes zero.
     direction, terminal : optional
         As of `plane` and `distance`.
 
@@ -335,7 +341,7 @@ def function(
     Raises
     ------
     visviva.InvalidInput
-        By name.
+        For what cannot be called with these three, or a direction or an end that is none of these.
 
     Examples
     --------

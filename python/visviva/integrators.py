@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva import _core
-from visviva._html import Record
+from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
+from visviva._text import count
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,6 +88,26 @@ class Method(Record):
         return {name: _triangle(each) if name == "a" else np.array(each[0]) for name, each in tables}
 
 
+class _Listed(list[Method], Shown):
+    """A list of methods that reads as a table."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return as_text(self._sheet())
+
+    def _sheet(self) -> Sheet:
+        def row(method: Method) -> tuple[str, ...]:
+            kinds = [word for word in ("adaptive", "symplectic", "reversible") if getattr(method, word)]
+            # Of a summary what comes after the numbers, which have columns of their own.
+            use = method.summary.rpartition(": ")[2]
+            return (method.name, str(method.order), str(method.stages), ", ".join(kinds) or "fixed step", use)
+
+        header = ("method", "order", "stages", "kind", "for what")
+        note = "Each is a record, with its reference: methods()[0].reference. run(method=…) takes it, or its name."
+        return Sheet(count(len(self), "method"), [row(method) for method in self], header, note)
+
+
 def _triangle(rows: list[list[float]]) -> NDArray[np.float64]:
     """Rows of growing lengths as a square, with zeros on and above its diagonal."""
     square = np.zeros((len(rows), len(rows)))
@@ -102,10 +123,16 @@ def methods() -> list[Method]:
     Returns
     -------
     list of Method
+        Shown as a table.
 
     Examples
     --------
     >>> import visviva as vv
+    >>> print(vv.methods())  # doctest: +ELLIPSIS
+    32 methods
+    method                order  stages  kind                    for what
+    euler                 1      1       fixed step              the simplest method, for comparison.
+    ...
     >>> [method.name for method in vv.methods() if method.adaptive and method.order == 8]
     ['dop853']
     """
@@ -114,7 +141,7 @@ def methods() -> list[Method]:
 
 def _records(*, rigid: bool) -> list[Method]:
     """The methods of scenes, or those that step rigid bodies."""
-    return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid)]
+    return _Listed(Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid))
 
 
 def __dir__() -> list[str]:

@@ -29,7 +29,7 @@ class Cost(Record):
     seconds : float
         Time in seconds, as the trial went.
     exact : bool
-        Whether the number of steps is; else it is scaled from the trial.
+        Whether the number of steps is exact, as that of equal steps is; else it is scaled from the trial.
 
     Examples
     --------

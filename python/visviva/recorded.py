@@ -272,7 +272,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
 
         # Files of before they were kept have none.
         definitions = tuple(map(from_description, self._result.get("looked_for", ())))
-        return EventTable._from_core(self._result["events"], definitions)
+        return EventTable._made(self._result["events"], definitions=definitions)
 
     @property
     def collisions(self) -> CollisionTable:

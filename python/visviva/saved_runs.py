@@ -100,7 +100,11 @@ def resume(path: str | PathLike[str], *, threads: int | None = None, progress: P
     try:
         request = _read(folder / _REQUEST)
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InvalidInput("path", f"expected a run that was saved as it went, in {str(folder)!r}: {error}") from error
+        raise InvalidInput(
+            "path",
+            f"expected a run that was saved as it went, in {str(folder)!r}; give the folder that save_to named: "
+            f"{error}",
+        ) from error
     start = _loaded(folder / _START)
     return _go_on(folder, start.scene, replace(request, threads=threads, progress=progress))
 
@@ -114,13 +118,20 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
         For what cannot be written in parts, before anything runs or is written.
     """
     if request.save_to is None:
-        raise InvalidInput("save_to", "expected the folder that the parts are written to, got none")
+        raise InvalidInput(
+            "save_to", 'expected the folder that the parts are written to, got none; name a new one, as save_to="run"'
+        )
     if request.save_every is None:
-        raise InvalidInput("save_every", "expected the time of the scene after which a part is written, got none")
+        raise InvalidInput(
+            "save_every",
+            "expected the time of the scene after which a part is written, got none; give one of which some hundred "
+            "make the run, or out.save(path) writes it when it is over",
+        )
     every = positive("save_every", request.save_every)
     if request.time_transformation is not None:
         raise InvalidInput(
-            "save_every", "steps under a time transformation follow from the start; leave one of them out"
+            "save_every",
+            "steps under a time transformation follow from the start; leave save_every or time_transformation out",
         )
     asked = request.to_core(scene._keywords, scene._names)
     if any(event["kind"] == "function" for event in asked["events"]):
@@ -132,7 +143,13 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
     _parts(scene, replace(request, save_every=every), asked, _core.plan(asked))
     folder = Path(path_text("save_to", request.save_to, "folder"))
     if (folder / _REQUEST).exists():
-        raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume continues it")
+        raise InvalidInput(
+            "save_to", f"there is a run in {str(folder)!r}; visviva.resume continues it, or name another folder"
+        )
+    if folder.exists() and not folder.is_dir():
+        raise InvalidInput("save_to", f"expected a folder, got the file {str(folder)!r}; name another")
+    if not folder.parent.is_dir():
+        raise InvalidInput("save_to", f"expected a folder in one that exists, got {str(folder)!r}; make that one first")
     folder.mkdir(exist_ok=True)
     # A state of no length: the scene, and what it goes on with itself.
     scene.run(t=[scene.t0], record=("position", "velocity")).save(folder / _START)
@@ -158,7 +175,9 @@ def _go_on(folder: Path, scene: Scene, request: RunRequest) -> Trajectory:
             run = _whole(file)
             if run is not None:
                 if not np.array_equal(run.t, part.times[: len(run.t)]):
-                    raise InvalidInput("path", f"{str(file)!r} is not that part of this run")
+                    raise InvalidInput(
+                        "path", f"{str(file)!r} is not that part of this run; take it away, and that part is run again"
+                    )
             elif _steps_left(request, results) == 0:
                 results[-1]["status"] = np.array([Status.TOO_MANY_STEPS], dtype=np.int8)
                 results[-1]["error"] = {

@@ -333,7 +333,8 @@ class Scene(Runnable[Trajectory], Framed):
         Raises
         ------
         visviva.InvalidInput
-            By name.
+            For an accuracy that is not between 5e-13 and 1, another word for `of`, times that `run` refuses, or rigid
+            bodies: trials know points only.
         visviva.ConvergenceError
             If no method holds it, or a trial ends early.
 

@@ -328,6 +328,49 @@ class Trajectory(Recorded):
             )
         return plot_trajectory(self, bodies, plane, ax)
 
+    def plot_phase(
+        self, component: Literal["x", "y", "z"] | None = None, *, bodies: object = None, ax: Axes | None = None
+    ) -> Axes:
+        """Draw a component of the places against that of the velocities, a line for each body.
+
+        Units: those of the scene.
+
+        Parameters
+        ----------
+        component : {"x", "y", "z"}, optional
+            Which; by default that in which the bodies go farthest.
+        bodies : sequence of int or str, optional
+            Which; all if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            A dot is where a body is at the end.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If position or velocity was not recorded, there is no body or no time, an argument is not one of these, or
+            matplotlib is not installed.
+
+        See Also
+        --------
+        EventTable.plot : the points at which the run passes through a section, ``out.events.plot()``.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> spring = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), vv.Harmonic(k=1.0), vv.LinearDrag(tau=5.0))
+        >>> ax = spring.run(t=np.linspace(0.0, 20.0, 401)).plot_phase()
+        >>> ax.get_xlabel(), ax.get_ylabel()
+        ('position, x', 'velocity, x')
+        """
+        from visviva._phase import plot_phase
+
+        return plot_phase(self, component, bodies, ax)
+
     def animate(
         self,
         path: str | PathLike[str] | None = None,
@@ -348,7 +391,8 @@ class Trajectory(Recorded):
         Parameters
         ----------
         path : str or PathLike, optional
-            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+            A file ending in ``.gif``, ``.html`` or ``.mp4``, which needs ffmpeg (``pip install 'visviva[video]'``
+            brings one); nothing is written without a path.
         bodies : sequence of int or str, optional
             Which; all if not given.
         plane : str, optional

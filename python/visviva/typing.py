@@ -320,11 +320,12 @@ class IonHistory(TypedDict):
 
 
 class RunSettings(TypedDict, total=False):
-    """What advice gives to ``run``.
+    """What `Advice.how` holds: the keywords with which ``run(t, **advice.how)`` follows the advice.
 
     Attributes
     ----------
     method : str
+        One of `visviva.methods`.
     dt, rtol : float
         The step, in the units of the scene, or the relative tolerance, without dimension.
 

@@ -1,6 +1,10 @@
 """Pictures of runs, still and moving: what is shown is what was computed, and nothing else."""
 
+import itertools
+import json
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -115,8 +119,64 @@ def test_a_writer_that_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.M
     from matplotlib.animation import writers
 
     monkeypatch.setattr(type(writers), "is_available", lambda self, name: False)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(vv.InvalidInput, match="ffmpeg is not installed"):
         EIGHT.animate(tmp_path / "a.mp4")
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package_with(RuntimeError("No ffmpeg exe could be found")))
+    with pytest.raises(vv.MissingPackage, match=r"no ffmpeg for this system.*give a \.gif or \.html"):
+        EIGHT.animate(tmp_path / "a.mp4")
+    assert not list(tmp_path.iterdir())
+
+
+def package_with(found: str | Exception) -> Any:
+    """What imageio-ffmpeg is to us."""
+
+    def get_ffmpeg_exe() -> str:
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    package = ModuleType("imageio_ffmpeg")
+    package.get_ffmpeg_exe = get_ffmpeg_exe  # type: ignore[attr-defined]
+    return package
+
+
+#: Takes frames as ffmpeg does, and keeps them and what it was told.
+RECORDER = """#!{python}
+import json, pathlib, sys
+if "-version" not in sys.argv:
+    pathlib.Path(sys.argv[-1]).write_bytes(sys.stdin.buffer.read())
+    pathlib.Path(sys.argv[-1] + ".json").write_text(json.dumps(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a script is no program there")
+@pytest.mark.parametrize("brought", [False, True], ids=["of the system", "of the package"])
+def test_ffmpeg_is_given_every_frame(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, brought: bool) -> None:
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    recorder = programs / ("ffmpeg-of-a-package" if brought else "ffmpeg")
+    recorder.write_text(RECORDER.format(python=sys.executable), encoding="utf-8")
+    recorder.chmod(0o755)
+    monkeypatch.setenv("PATH", str(programs))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package_with(str(recorder)) if brought else None)
+    film = tmp_path / "eight.mp4"
+    EIGHT.animate(film, frames=7, fps=30)
+    told = json.loads((tmp_path / "eight.mp4.json").read_text(encoding="utf-8"))
+    width, height = map(int, told[told.index("-s") + 1].split("x"))
+    assert width % 2 == height % 2 == 0  # which H.264 needs
+    frames = np.frombuffer(film.read_bytes(), dtype=np.uint8).reshape(7, height, width, 4)
+    assert all((one != other).any() for one, other in itertools.pairwise(frames))
+    assert float(told[told.index("-framerate") + 1] if "-framerate" in told else told[told.index("-r") + 1]) == 30.0
+
+
+def test_a_film_has_its_frames(tmp_path: Path) -> None:
+    """Where ffmpeg is: the film is read back."""
+    package = pytest.importorskip("imageio_ffmpeg")
+    EIGHT.animate(tmp_path / "eight.mp4", frames=15, fps=5)
+    frames, seconds = package.count_frames_and_secs(str(tmp_path / "eight.mp4"))
+    assert frames == 15
+    assert seconds == pytest.approx(3.0, abs=0.21)
 
 
 def test_nothing_to_show(monkeypatch: pytest.MonkeyPatch) -> None:

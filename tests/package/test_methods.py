@@ -1,5 +1,7 @@
 """What a method tells of itself, against what follows from it."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,24 @@ def test_every_method_has_coefficients_of_a_kind() -> None:
     assert multistep == {"stormer13"}
     adaptive = {name for name, method in METHODS.items() if method.adaptive}
     assert {name for name, kind in kinds.items() if "error" in kind} == adaptive - {"taylor"}
+
+
+@pytest.mark.parametrize("listed", [vv.methods(), vv.rigid.methods()], ids=["points", "bodies"])
+def test_methods_read_as_a_table(listed: list[vv.Method]) -> None:
+    lines = repr(listed).splitlines()
+    assert lines[0] == f"{len(listed)} methods"
+    assert lines[1].split() == ["method", "order", "stages", "kind", "for", "what"]
+    kind = slice(lines[1].index("kind"), lines[1].index("for what"))
+    for line, method in zip(lines[2:-1], listed, strict=True):
+        assert line.split()[:3] == [method.name, str(method.order), str(method.stages)]
+        for word in ("symplectic", "reversible", "adaptive"):
+            assert (word in line[kind]) == getattr(method, word)
+    shown = listed._repr_html_()  # type: ignore[attr-defined]
+    assert shown.startswith(f"<table><caption>{len(listed)} methods</caption>")
+    assert shown.count("<tr>") == len(listed) + 1
+    # A list all the same.
+    assert isinstance(listed, list)
+    assert pickle.loads(pickle.dumps(listed)) == listed == list(listed)
 
 
 @pytest.mark.parametrize("name", RUNGE_KUTTA)

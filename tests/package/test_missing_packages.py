@@ -46,6 +46,10 @@ CALLS: dict[tuple[str, str], list[tuple[str, Callable[[Path], Any]]]] = {
         ("plot", lambda folder: SWING.run(t=[0.0, 0.5]).animate(folder / "swing.gif")),
     ],
     ("cycler", "plot"): [("plot", lambda _: vv.plot_style())],
+    ("imageio_ffmpeg", "video"): [
+        ("path", lambda folder: RUN.animate(folder / "eight.mp4")),
+        ("path", lambda folder: SWING.run(t=[0.0, 0.5]).animate(folder / "swing.mp4")),
+    ],
     ("sympy", "symbolic"): [
         ("L", lambda _: SWING.momenta),
         ("names", lambda _: vv.coordinate("x").diff(vv.time)),
@@ -85,6 +89,8 @@ def test_it_is_one_error_with_one_wording(
     for module in [name for name in sys.modules if name.split(".")[0] == package]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, package, None)
+    # Of programs there are none either: ffmpeg takes the place of the package that brings it.
+    monkeypatch.setenv("PATH", str(tmp_path))
     for argument, call in CALLS[package, extra]:
         with pytest.raises(vv.MissingPackage) as caught:
             call(tmp_path)

@@ -3,6 +3,7 @@
 import sys
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -87,6 +88,43 @@ def test_memory_is_that_of_the_parts(tmp_path: Path) -> None:
         tracemalloc.stop()
     assert parquet.ParquetFile(tmp_path / "a").metadata.num_rows == 400 * 834
     assert most < 8e6  # a part, its columns and its table: 0.5 MB each
+
+
+SPRING = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), vv.Harmonic(k=1.0))
+LONG = np.linspace(0.0, 50.0, 60_000)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: SPRING.run(t=LONG),
+        lambda: SPRING.ensemble(position=np.ones((20, 1, 3))).run(t=LONG[:3_000]),
+        lambda: vv.systems.oscillator(position=[1.0]).run(t=LONG),
+        lambda: vv.problems.kepler(e=0.5).scene.run(t=LONG).elements(about=0),
+        lambda: (
+            SPRING.ensemble(position=np.ones((6_000, 1, 3)))
+            .run(t=30.0, events=[vv.events.plane([0.0, 0.0, 0.0], [1.0, 0.0, 0.0])])
+            .events
+        ),
+    ],
+    ids=["run", "ensemble", "generalized", "elements", "events"],
+)
+def test_a_long_result_is_written_in_the_memory_of_a_group(
+    made: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of rows of 5 to 30 numbers that are 2.4 MB together at least; of a million as of these."""
+    monkeypatch.setattr(_parquet, "GROUP_BYTES", 1 << 17)
+    result = made()
+    result.to_parquet(tmp_path / "once")  # what is computed on first use stays with the result
+    tracemalloc.start()
+    try:
+        result.to_parquet(tmp_path / "a")
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    rows = parquet.ParquetFile(tmp_path / "a").metadata.num_rows
+    assert rows >= 54_000
+    assert most < 1.2e6  # some groups, 0.48 MB, and the numbers of all events, 0.93 MB
 
 
 def test_an_interrupted_file_holds_the_copies_before(tmp_path: Path) -> None:

@@ -22,6 +22,13 @@ HELIX = vv.Scene(
     vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, -1.0, 0.5]]), vv.UniformMagneticField([0.0, 0.0, 1.0], charge=[1.0])
 ).run(t=np.linspace(0.0, 400.0, 1201))
 
+SWING = vv.systems.pendulum(position=[1.0])
+ROSETTE = (
+    vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]], [[0, 0.5, 0]]), vv.CentralField(vv.potentials.Plummer(-1.0, 0.5)))
+    .run(t=100.0, events=[vv.events.plane([0, 0, 0], [1, 0, 0]), vv.events.plane([0, 0, 0], [0, 1, 0], direction=1)])
+    .events
+)
+
 
 def ellipse(size: float) -> vv.Trajectory:
     """A flat one, of such a size."""
@@ -35,12 +42,16 @@ FLAT: dict[str, Picture] = {
     "orbits": lambda ax: PLANETS.plot(ax=ax),
     "angular velocity": lambda ax: FREE.plot("components", ax=ax),
     "effective potential": lambda ax: TOP.plot("effective_potential", ax=ax),
+    "potential of a system": lambda ax: SWING.plot_effective_potential((-7.0, 7.0), ax=ax),
+    "paths in phase space": lambda ax: PLANETS.plot_phase(ax=ax),
+    "section": lambda ax: ROSETTE.plot(ax=ax),
     "tally": lambda ax: vv.scattering.monte_carlo(
         vv.potentials.Coulomb(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=3.0, n_events=2000, seed=1, bins=20
     )["cm_angle"].plot(ax=ax),
 }
 SOLID: dict[str, Picture] = {
     "polhode": lambda ax: FREE.plot("polhode", ax=ax),
+    "whole polhode": lambda ax: vv.rigid.polhode([1.0, 2.0, 2.5], [0.3, 0.9, -0.5]).plot(ax=ax),
     "axes": lambda ax: FREE.plot("axes", ax=ax),
     "nutation": lambda ax: TOP.plot("nutation", ax=ax),
     "orbits": lambda ax: PLANETS.plot(plane="xyz", ax=ax),

@@ -251,7 +251,7 @@ class PoincareSection(Record):
         Raises
         ------
         InvalidInput
-            For a coordinate that is not there.
+            For a coordinate that is not there, what are no axes, or if matplotlib is not installed.
 
         Examples
         --------

@@ -21,6 +21,7 @@ from visviva.generalized._symbolic import Symbols, sympy, time
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from visviva.generalized._nodes import Node
@@ -160,6 +161,8 @@ class GeneralizedEventTable(Lines["GeneralizedEventColumnName"]):
         The copy of an ensemble; 0 of a single run.
     definitions : tuple of Event
         What was looked for, by `which`. Of a function its name alone.
+    coordinates : tuple of str
+        What the numbers of positions are of.
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
 
@@ -179,6 +182,47 @@ class GeneralizedEventTable(Lines["GeneralizedEventColumnName"]):
     momentum: NDArray[np.float64]
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
+    coordinates: tuple[str, ...]
+
+    def plot(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw a coordinate against its momentum at the events: of those of a section, a Poincaré section of the run.
+
+        Of one run `Lagrangian.poincare` gives the same points; here they are of all copies of an ensemble, too.
+
+        Units: those of the system.
+
+        Parameters
+        ----------
+        name : str, optional
+            The coordinate; the last if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            A color for each copy of an ensemble, else for each event that was looked for; `of` gives those of one.
+
+        Raises
+        ------
+        InvalidInput
+            For a coordinate that is not there, no event at all, what are no axes, or if matplotlib is not installed.
+
+        References
+        ----------
+        M. Hénon & C. Heiles, Astron. J. 69 (1964) 73.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> stars = vv.systems.henon_heiles().ensemble(momentum=[[0.4, 0.1], [0.4, 0.2]])
+        >>> passes = vv.events.coordinate("x", direction=1)
+        >>> stars.run(t=100.0, events=[passes]).events.plot("y").get_ylabel()
+        'momentum of y'
+        """
+        from visviva._phase import plot_generalized_section
+
+        return plot_generalized_section(self, name, ax)
 
     def _exported(self, columns: GeneralizedEventColumnName | Sequence[GeneralizedEventColumnName] | None) -> Columns:
         known = self._names()
@@ -217,4 +261,4 @@ def found_events(
         "momentum": momentum.copy(),
         "member": copies.astype(np.int64),
     }
-    return GeneralizedEventTable._from_core(columns, events)
+    return GeneralizedEventTable._made(columns, definitions=events, coordinates=tuple(system.coordinates))

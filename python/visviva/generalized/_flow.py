@@ -106,7 +106,7 @@ class Flow:
             raise Interrupted("the section was interrupted", result=found)
         return found
 
-    def phase_portrait(
+    def plot_phase_portrait(
         self: Any,
         position: tuple[float, float],
         momentum: tuple[float, float],
@@ -136,17 +136,73 @@ class Flow:
         Raises
         ------
         InvalidInput
-            For several coordinates, or an energy that is not conserved.
+            For several coordinates (`Lagrangian.routhian` takes away cyclic ones), an energy that is not conserved,
+            ends that are not in order, or if matplotlib is not installed.
+
+        References
+        ----------
+        L. D. Landau & E. M. Lifshitz, *Mechanics*, 3rd ed., § 11; H. Goldstein, C. Poole & J. Safko, *Classical
+        Mechanics*, 3rd ed., § 8.1.
 
         Examples
         --------
         >>> import visviva as vv
-        >>> vv.systems.pendulum().phase_portrait((-6.0, 6.0), (-8.0, 8.0)).get_xlabel()
+        >>> vv.systems.pendulum().plot_phase_portrait((-6.0, 6.0), (-8.0, 8.0)).get_xlabel()
         'theta'
         """
-        from visviva.generalized._portrait import phase_portrait
+        from visviva.generalized._portrait import plot_phase_portrait
 
-        return phase_portrait(self, position, momentum, whole_number("points", points, low=8), ax)
+        return plot_phase_portrait(self, position, momentum, whole_number("points", points, low=8), ax)
+
+    #: The name that it had first.
+    phase_portrait = plot_phase_portrait
+
+    def plot_effective_potential(
+        self: Any, position: tuple[float, float], *, points: int = 600, ax: Axes | None = None
+    ) -> Axes:
+        """Draw the potential in which the one coordinate of a system moves, and the energy of the start.
+
+        It is the energy at rest (Jacobi's integral at a velocity of 0, or H where the velocity is 0): V(q) of a
+        particle on a line, with the centrifugal term of what `Lagrangian.routhian` has reduced. The motion goes where
+        the line of the energy is above it, and turns at the dots.
+
+        Units: those of the system.
+
+        Parameters
+        ----------
+        position : (float, float)
+            What is shown of the coordinate, the smaller end first.
+        points : int
+            Places at which the potential is computed.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        InvalidInput
+            For several coordinates (`Lagrangian.routhian` takes away cyclic ones), an energy that is not conserved, a
+            Hamiltonian that is not quadratic in the momentum, ends that are not in order, places at none of which there
+            is a potential, or if matplotlib is not installed.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 3.3 and § 8.3; L. D. Landau & E. M.
+        Lifshitz, *Mechanics*, 3rd ed., § 11.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> nods = vv.systems.spherical_pendulum(position=[1.0, 0.0], velocity=[0.0, 2.0]).routhian()
+        >>> nods.plot_effective_potential((0.1, 3.0)).get_xlabel()
+        'theta'
+        """
+        from visviva.generalized._portrait import plot_effective_potential
+
+        return plot_effective_potential(self, position, whole_number("points", points, low=8), ax)
 
     def flow_jacobian(self: Any, t: float, *, rtol: float = 1e-12) -> NDArray[np.float64]:
         """Derivatives of the state at a time with respect to the state at the start, by the variational equations.
@@ -171,6 +227,10 @@ class Flow:
             With constraints, or more than 16 coordinates.
         ConvergenceError
             At a singularity.
+
+        References
+        ----------
+        E. Hairer, S. P. Nørsett & G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.14.
 
         Examples
         --------

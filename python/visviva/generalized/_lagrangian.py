@@ -51,13 +51,14 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     position, velocity : array_like, shape (n,), optional
         The start; at rest if no velocity is given.
     forces : dict, optional
-        Generalized forces by coordinate, of coordinates, velocities and time.
-    dissipation : sympy.Expr, optional
+        Generalized forces by coordinate, of coordinates, velocities and time, each given as `L` is.
+    dissipation : sympy.Expr or callable, optional
         Rayleigh's function R: the forces −∂R/∂q̇.
-    constraints : sequence, optional
-        Holonomic constraints g(q, t) = 0, kept by multipliers; states are put back on them after every step.
-    nonholonomic : sequence, optional
-        Constraints a(q, t)·q̇ + b(q, t) = 0.
+    constraints : sequence of sympy.Expr or callable, optional
+        The left sides of holonomic constraints g(q, t) = 0, kept by multipliers; states are put back on them after
+        every step.
+    nonholonomic : sequence of sympy.Expr or callable, optional
+        The left sides of constraints a(q, t)·q̇ + b(q, t) = 0.
     consistent : {"project"}, optional
         Puts a start that violates the constraints on them; it is refused otherwise.
     t0 : float

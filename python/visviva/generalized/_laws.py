@@ -89,7 +89,7 @@ class Laws:
         """How far d'Alembert's principle fails along a run: the virtual work of the reactions.
 
         The reactions are d/dt ∂L/∂q̇ − ∂L/∂q − Q; displacements δq of length 1 with ∂g/∂q δq = 0 (and a δq = 0 of
-        nonholonomic constraints) are virtual. Without constraints there are no reactions, and all of them are.
+        nonholonomic constraints) are virtual. Without constraints every displacement is, and there are no reactions.
 
         Units: none: what is told is relative, without dimension.
 

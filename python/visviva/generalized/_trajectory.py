@@ -310,7 +310,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         Raises
         ------
         InvalidInput
-            For a coordinate that is not there.
+            For a coordinate that is not there, what are no axes, or if matplotlib is not installed.
 
         Examples
         --------
@@ -345,7 +345,8 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         Parameters
         ----------
         path : str or PathLike, optional
-            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+            A file ending in ``.gif``, ``.html`` or ``.mp4``, which needs ffmpeg (``pip install 'visviva[video]'``
+            brings one); nothing is written without a path.
         points : callable, optional
             ``points(q, t, **parameters)`` gives the places of what is drawn, each of two or three numbers or arrays
             over time, in the order in which lines join them; ``q[0]`` is the first coordinate, shape (T,). Those of

@@ -23,7 +23,7 @@ def eccentric_from_mean(mean: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.
     Parameters
     ----------
     mean : array_like
-        Any angle or number.
+        The mean anomaly M in radians, any number.
     eccentricity : array_like
         0 ≤ e < 1.
 

@@ -23,7 +23,7 @@ def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive:
     Parameters
     ----------
     mean : array_like
-        Any angle or number.
+        The mean anomaly M, any number.
     eccentricity : array_like
         e > 1.
     repulsive : bool, optional

@@ -23,7 +23,7 @@ def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
     Parameters
     ----------
     mean : array_like
-        Any angle or number.
+        The mean anomaly M, any number.
 
     Returns
     -------

@@ -119,7 +119,8 @@ class FreeRotation(Rotation, Record):
         Parameters
         ----------
         path : str or PathLike, optional
-            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+            A file ending in ``.gif``, ``.html`` or ``.mp4``, which needs ffmpeg (``pip install 'visviva[video]'``
+            brings one); nothing is written without a path.
         plane : str, optional
             What is shown: ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"``, the default.
         trail : float

@@ -102,7 +102,11 @@ class HeavyTop(Record):
         Raises
         ------
         InvalidInput
-            For NaN or infinity.
+            For an angle outside [0, π], NaN or infinity.
+
+        References
+        ----------
+        Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.7.
 
         Examples
         --------

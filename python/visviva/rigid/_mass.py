@@ -246,7 +246,7 @@ def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> Mass
     Raises
     ------
     InvalidInput
-        For anything else.
+        For what is no list of `MassProperties`, or none at all.
 
     References
     ----------

@@ -288,7 +288,7 @@ def from_scipy(rotation: Rotation) -> NDArray[np.float64]:
     Raises
     ------
     InvalidInput
-        For anything else.
+        For what is no rotation of SciPy.
 
     Examples
     --------

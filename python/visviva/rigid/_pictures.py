@@ -22,13 +22,16 @@ if TYPE_CHECKING:
 
     from visviva.body_turning import BodyTurning
     from visviva.rigid._free import FreeRotation
+    from visviva.rigid._polhode import Polhode
     from visviva.rigid._top_motion import TopMotion
 
-__all__ = ["plot_free_rotation", "plot_top", "polhode", "traces"]
+__all__ = ["plot_free_rotation", "plot_polhode", "plot_top", "polhode", "traces"]
 
 _LETTERS = "xyz"
 # More points than this cannot be told apart in a figure and make the file large.
 _POINTS = 4000
+# Of a separatrix, which takes forever, the part in units of its rate: the ends are within 1e-5 of where it goes.
+_FOREVER = 12.0
 
 
 def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str, ax: Axes | None) -> Figure:
@@ -41,6 +44,22 @@ def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str, ax: Axes |
 def plot_top(motion: TopMotion, kind: str, ax: Axes | None) -> Figure:
     """A picture of the motion of a heavy top; see `TopMotion.plot`."""
     return _plotted(motion, kind, {"nutation": nutation, "theta": theta, "effective_potential": potential}, ax)
+
+
+def plot_polhode(path: Polhode, ax: Axes | None) -> Figure:
+    """A picture of a polhode as a whole; see `Polhode.plot`."""
+    from visviva.rigid._free import free_rotation
+
+    if np.isfinite(path.period):
+        t = np.linspace(0.0, path.period, 721)
+    else:
+        t = np.linspace(-_FOREVER, _FOREVER, 721) / (path.rate if path.kind == "separatrix" else 1.0)
+    whole = free_rotation(path.moments, path.angular_velocity, t)
+    figure = _plotted(whole, "polhode", {"polhode": polhode}, ax)
+    axes: Any = figure.axes[-1] if ax is None else ax
+    for line in _separatrices(path.moments):
+        axes.plot(*line, linewidth=0.8, linestyle="-", color="0.4", zorder=1)
+    return figure
 
 
 _SOLID = ("polhode", "axes", "nutation")
@@ -81,6 +100,22 @@ def polhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     axes.plot(*path[:1].T, "o", markersize=4, color=VERMILION)
     set_box(axes, half)
     axes.set(**{f"{letter}label": f"ω{letter} / √2T" for letter in _LETTERS}, title="polhode")
+
+
+def _separatrices(moments: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """The two ellipses Σ I x² = 1, Σ I² x² = I₂ that go through the middle axis; none of a symmetric body."""
+    order = np.argsort(moments)
+    low, middle, high = moments[order]
+    if not 0.0 < low < middle < high:
+        return []
+    slope = np.sqrt(low * (middle - low) / (high * (high - middle)))
+    along, around = 1.0 / np.sqrt(low + high * slope**2), np.linspace(0.0, 2.0 * np.pi, 361)
+    found = []
+    for side in (slope, -slope):
+        line = np.empty((3, around.size))
+        line[order] = along * np.cos(around), np.sin(around) / np.sqrt(middle), side * along * np.cos(around)
+        found.append(line)
+    return found
 
 
 def herpolhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:

@@ -13,6 +13,8 @@ from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 _Kind = Literal["steady", "symmetric", "about_smallest", "about_largest", "separatrix"]
@@ -48,6 +50,8 @@ class Polhode(Record):
         The mean rate at which the body's `axis` goes round the angular momentum; of a steady motion, |ω|.
     largest : ndarray, shape (3,)
         The largest angular momentum along each axis of the body, with the sign that it has at time 0.
+    moments, angular_velocity : ndarray, shape (3,)
+        As given: the principal moments, and the angular velocity along their axes at time 0.
 
     References
     ----------
@@ -71,6 +75,43 @@ class Polhode(Record):
     flip_time: float
     precession_rate: float
     largest: NDArray[np.float64]
+    moments: NDArray[np.float64]
+    angular_velocity: NDArray[np.float64]
+
+    def plot(self, *, ax: Axes | None = None) -> Figure:
+        """Draw the path of the angular velocity on the inertia ellipsoid, all of it, and the separatrix in gray.
+
+        Of a motion over times of your own, as it is at each of them, see `FreeRotation.plot`.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where, of three dimensions; a figure of its own if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            With one panel; that of ``ax`` if that is given. Its axes are ω / √2T, in which the ellipsoid is Σ I x² = 1.
+
+        Raises
+        ------
+        InvalidInput
+            For axes of two dimensions, a body at rest, the inertia ellipsoid of a rod, which has no end, or if
+            matplotlib is not installed.
+
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 37; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.6.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.rigid.polhode([1.0, 2.0, 3.0], [0.1, 1.0, 0.3]).plot().axes[0].get_title()
+        'polhode'
+        """
+        from visviva.rigid._pictures import plot_polhode
+
+        return plot_polhode(self, ax)
 
 
 @known_keywords
@@ -107,11 +148,16 @@ def polhode(moments: ArrayLike, angular_velocity: ArrayLike) -> Polhode:
     >>> path.kind, path.axis, round(path.period, 9)
     ('about_largest', 2, 71.014506079)
     """
-    spin = float_array("angular_velocity", angular_velocity, (3,))
-    found = _core.polhode(float_array("moments", moments, (3,)), spin)
+    # Copies, since results are read-only and what was given is the caller's.
+    spin, own = (
+        np.array(float_array("angular_velocity", angular_velocity, (3,))),
+        np.array(float_array("moments", moments, (3,))),
+    )
+    found = _core.polhode(own, spin)
     steady = found["kind"] == "steady"
     largest = np.array(found["largest"])
-    largest.flags.writeable = False
+    for array in (largest, own, spin):
+        array.flags.writeable = False
     return Polhode(
         kind=found["kind"],
         axis=None if steady else found["axes"][2],
@@ -123,6 +169,8 @@ def polhode(moments: ArrayLike, angular_velocity: ArrayLike) -> Polhode:
         flip_time=0.5 * found["period"],
         precession_rate=found["precession"],
         largest=largest,
+        moments=own,
+        angular_velocity=spin,
     )
 
 

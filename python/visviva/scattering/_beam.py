@@ -37,7 +37,7 @@ class Spectrum(Record):
     Raises
     ------
     InvalidInput
-        For what is no such list.
+        For no energy, what is not positive, or another number of weights than of energies.
 
     Examples
     --------

@@ -46,7 +46,8 @@ class Channel(Record):
     Raises
     ------
     InvalidInput
-        For what are no such numbers.
+        For a Q that is no number, a part outside [0, 1], masses that are not positive, or a table with fewer than two
+        rows or whose first column does not rise from 0 or more.
 
     References
     ----------

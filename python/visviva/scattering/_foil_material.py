@@ -93,7 +93,7 @@ class Ion(Record):
     Raises
     ------
     InvalidInput
-        For what is not positive.
+        For a number that is not positive.
 
     Examples
     --------

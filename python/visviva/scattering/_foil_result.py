@@ -206,7 +206,7 @@ class FoilResult(GoesOn, Counted, Shown, Mapping["FoilTallyName", FoilTally]):  
         Raises
         ------
         InvalidInput
-            For another word.
+            For another word than these three.
 
         Examples
         --------

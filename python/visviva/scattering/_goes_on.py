@@ -119,6 +119,7 @@ class GoesOn:
         Parameters
         ----------
         path : path-like
+            The file, exactly as named.
 
         Returns
         -------
@@ -128,7 +129,9 @@ class GoesOn:
         Raises
         ------
         InvalidInput
-            If the file is no such file, is damaged, or was written by a later version.
+            If the file is none that `save` wrote, is damaged, or was written by a later version.
+        FileNotFoundError
+            If there is no such file.
 
         Examples
         --------

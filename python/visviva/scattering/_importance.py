@@ -45,7 +45,8 @@ class Strata(Record):
     Raises
     ------
     InvalidInput
-        For what are no such numbers.
+        For radii that do not rise from 0, more than 1024 rings, a part that is below 1e-6 of the sum, or another number
+        of parts than of rings.
 
     References
     ----------
@@ -110,7 +111,8 @@ class Strata(Record):
         Raises
         ------
         InvalidInput
-            For what are no such numbers.
+            For a number of rings outside 2 to 1024, a radius that is not positive, or an innermost disc that is not
+            smaller than the whole.
 
         Examples
         --------
@@ -143,7 +145,7 @@ class LargeAngles(Record):
     Raises
     ------
     InvalidInput
-        For what are no such numbers.
+        For an angle outside (0, π), or a part that is not between 1e-6 and 1 − 1e-6.
 
     References
     ----------

@@ -1,7 +1,7 @@
 """Averages over an elastic collision with a target at rest.
 
 The one idea: the scattering is isotropic in the center-of-mass frame, so every energy transfer up to the greatest is as
-likely, and all averages hang on the ratio of the masses alone.
+likely, and all averages depend on the ratio of the masses alone.
 """
 
 from __future__ import annotations

@@ -218,7 +218,7 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
         ------
         InvalidInput
             With an energy spread, of an angle that a divergence smears, and of what channels differ in if their
-            probabilities hang on the impact parameter: no area of impact parameters tells those.
+            probabilities depend on the impact parameter: no area of impact parameters tells those.
 
         Examples
         --------

@@ -114,7 +114,7 @@ def run(
     Raises
     ------
     InvalidInput
-        A method that is not known.
+        For a method that is not known.
 
     Examples
     --------
