@@ -219,6 +219,11 @@ REFUSED = [
     (lambda: PENDULUM.ensemble(position=[[1.0], [2.0]], velocity=[[1.0]]), "velocity", r"\(B, 1\) with B = 2"),
     (lambda: PENDULUM.ensemble(position=np.zeros((0, 1))), "position", "expected at least one copy, got none"),
     (lambda: PENDULUM.ensemble(parameters={"z": [1.0]}), "parameters", "there is no parameter 'z'"),
+    (
+        lambda: PENDULUM.ensemble(position=np.ones((100_000, 1))).run(np.linspace(0.0, 1.0, 1_000_000)),
+        "t",
+        "1000000 times of states of 2 numbers in 100000 copies would take",
+    ),
     (lambda: PENDULUM.ensemble(position=[[1.0]]).run(1.0, threads=0), "threads", "from 1 to 1024, got 0"),
     (
         lambda: vv.systems.atwood().ensemble(position=[[1.0, 1.0], [1.0, 1.5], [1.0, 1.0]]).run(1.0),

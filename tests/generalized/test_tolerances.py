@@ -122,3 +122,22 @@ def test_what_does_not_apply_is_refused(how: dict[str, Any], message: str) -> No
     if "max_step" in how:
         with pytest.raises(vv.InvalidInput, match="max_step: matrix_exponential takes no steps"):
             oscillator().run(1.0, method="matrix_exponential", max_step=0.1)
+
+
+@pytest.mark.parametrize("method", ["taylor", "gauss16", "dop853", "verner98"])
+@pytest.mark.parametrize("momentum", [1e-5, 1e-6, 1e-9, 1e-12])
+def test_a_pericenter_that_the_time_cannot_tell_ends_by_name(method: Any, momentum: float) -> None:
+    """A fall from 1 to L²/2: the way round takes some L³, and the last digit of t ≈ 1.1 is 2e-16."""
+    falling = vv.systems.central_force(position=[1.0, 0.0], velocity=[0.0, momentum])
+    with pytest.raises(vv.ConvergenceError, match="below what can be told from the time") as caught:
+        falling.run(t=6.0, method=method)
+    assert caught.value.time == pytest.approx(np.pi / np.sqrt(8.0), rel=1e-6)  # half of the period, of a = 1/2
+    copies = falling.ensemble(velocity=[[0.0, momentum], [0.0, 1.0]]).run(t=6.0, method=method)
+    assert copies.status.tolist() == [vv.Status.STEP_FAILURE, vv.Status.OK]
+
+
+def test_a_span_of_one_denormal_number_ends() -> None:
+    """It once was looked at without an end."""
+    pendulum = vv.systems.double_pendulum()
+    with pytest.raises(vv.ConvergenceError, match="below what can be told from the time"):
+        pendulum.run(t=5e-324, method="taylor")

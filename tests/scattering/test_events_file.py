@@ -66,3 +66,9 @@ def test_without_pyarrow_it_is_said_how_to_get_it(tmp_path: Path, monkeypatch: p
         write(tmp_path / "events.parquet", 10)
     assert caught.value.argument == "to"
     assert not list(tmp_path.iterdir())
+
+
+def test_events_that_no_memory_is_there_for_are_refused_before_anything_runs() -> None:
+    """Their 10 numbers or so would take some 100 bytes each; Python once ended with the process."""
+    with pytest.raises(vv.InvalidInput, match=r"1000000000000 events would take .*write them to a file by to="):
+        vv.scattering.scattering_events(vv.potentials.Coulomb(1.0), **ASKED, n_events=10**12)
