@@ -55,6 +55,29 @@ def test_the_copy_is_named(own: str, tmp_path: Path) -> None:
         copies.run_to_parquet(**how, to=tmp_path / "copies.parquet", copies_at_once=1)
 
 
+@pytest.mark.parametrize("own", ["mass", "parameters"])
+def test_a_short_run_of_copies_with_masses_or_forces_of_their_own_is_not_looked_at(own: str) -> None:
+    """To look at each by itself would take longer than the run."""
+    start = {"velocity": [PASSAGE.particles.velocity] * 2}
+    masses, constants = {"mass": [[0.1, 10.0], [0.2, 10.0]]}, {"parameters": {"Gravity": {"G": [1.0, 1.01]}}}
+    given = {"mass": masses, "parameters": constants}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = PASSAGE.ensemble(**start, **given[own]).run(t=10.0, dt=0.1)
+    assert np.abs(out.energy[:, -1] / out.energy[:, 0] - 1.0).max() > 1.0
+
+
+@pytest.mark.parametrize(("bodies", "t", "looked_at"), [(14, 10.0, True), (15, 10.0, False), (15, 30.0, True)])
+def test_of_more_than_a_hundred_pairs_a_short_run_is_not_looked_at(bodies: int, t: float, looked_at: bool) -> None:
+    """A sum over 105 pairs is something beside 1700 evaluations of the forces, over 91, or beside 5100, it is not."""
+    apart = 1e3 * np.arange(bodies - 1)[:, None] * [1.0, 0.0, 0.0]
+    rest = vv.RigidBodies(np.full(bodies - 1, 10.0), moments=[[2.0, 3.0, 4.0]] * (bodies - 1), position=apart)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        vv.Scene(PASSAGE.particles[[0]], rest, vv.Gravity(1.0)).run(t=[t], dt=0.1)
+    assert [each.category for each in caught] == [vv.AccuracyWarning] * looked_at
+
+
 def test_what_resolves_it_is_not_blamed() -> None:
     drag = vv.RotationalDrag(0.5)
     body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
