@@ -1,4 +1,8 @@
-"""Oblate bodies and the first post-Newtonian correction: against digits, and by the precessions known of them."""
+"""Oblate bodies and the first post-Newtonian correction: against digits, and by the precessions known of them.
+
+Bounds: at rtol = 1e-12 the energy of 20 units of time drifts by 1e-12 and the angular momentum along the axis by half
+of that; momenta are sums of a few products.
+"""
 
 from typing import Any
 
@@ -60,8 +64,8 @@ def test_oblate_pulls_are_the_gradient_of_the_zonal_potential(n: int) -> None:
     np.testing.assert_allclose(scene.acceleration() * bodies.mass[:, None], force, rtol=0, atol=4e-15 * size * n)
     potential = scene.invariants().potential_energy
     # The numbers 0.3, 0.7 … and the axis are rounded.
-    assert potential == pytest.approx(float(energy), rel=1e-14)
-    assert scene.run(t=1e-9, record="virial").virial[0] == pytest.approx(float(virial), rel=1e-12)
+    assert potential == pytest.approx(float(energy), rel=1e-14, abs=0)
+    assert scene.run(t=1e-9, record="virial").virial[0] == pytest.approx(float(virial), rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("inclination", [0.3, 1.2, 2.0])
@@ -106,7 +110,7 @@ def test_what_oblate_bodies_conserve() -> None:
     assert table.energy.max < 1e-10
     assert table.momentum.max < 1e-14
     ell = out.angular_momentum
-    assert np.ptp(ell[:, 2]) < 1e-10
+    assert np.ptp(ell[:, 2]) < 5e-12
     assert np.ptp(ell[:, 0]) > 1e-4
 
 
@@ -130,7 +134,7 @@ def test_the_perihelion_of_mercury_advances_by_43_seconds_a_century() -> None:
     advance = (angle[64:].mean() - angle[:64].mean()) / turns
     expected = 6 * np.pi * gm / (c * c * a * (1 - e * e))
     # The next order is 1e-7 of it; round-off of 415 turns at 1e-13 is 1e-10 rad of 5e-7 a turn · 415.
-    assert advance == pytest.approx(expected, rel=2e-5)
+    assert advance == pytest.approx(expected, rel=2e-5, abs=0)
     assert advance * century / period * 180 / np.pi * 3600 == pytest.approx(42.98, abs=0.01)
 
 

@@ -1,4 +1,8 @@
-"""Charges that push and pull each other."""
+"""Charges that push and pull each other.
+
+Bounds: sums of a few terms in another order, 1e-14 of them; at rtol = 1e-12 what is kept drifts by 1e-13, and a run
+at 1e-13 ends 1e-12 off the closed form.
+"""
 
 import numpy as np
 import pytest
@@ -55,11 +59,11 @@ def test_charges_keep_everything_and_two_laws_add() -> None:
     scene = vv.Scene(bodies, vv.Coulomb(q, k=0.5, softening=0.1))
     table = scene.run(t=np.linspace(0, 2, 9), rtol=1e-12).conservation()
     assert all(row.conserved for row in table.rows)
-    assert all(row.max < 1e-10 for row in table.rows)
+    assert all(row.max < 2e-12 for row in table.rows)
     both = vv.Scene(bodies, vv.Coulomb(q, k=0.5), vv.Coulomb(2 * q, k=0.25))
     one = vv.Scene(bodies, vv.Coulomb(q, k=1.5))
     np.testing.assert_allclose(both.acceleration(), one.acceleration(), rtol=1e-14, atol=1e-15)
-    assert both.invariants().potential_energy == pytest.approx(one.invariants().potential_energy, rel=1e-14)
+    assert both.invariants().potential_energy == pytest.approx(one.invariants().potential_energy, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("exponent", [-498, -63, 300, 498])
@@ -68,8 +72,10 @@ def test_charges_of_any_size(exponent: int) -> None:
     bodies, q = charges(9)
     expected = vv.Scene(bodies, vv.Coulomb(q, k=1.0))
     scene = vv.Scene(bodies, vv.Coulomb(q * 2.0**exponent, k=2.0 ** (-2 * exponent)))
-    np.testing.assert_allclose(scene.acceleration(), expected.acceleration(), rtol=1e-13)
-    assert scene.invariants().potential_energy == pytest.approx(expected.invariants().potential_energy, rel=1e-13)
+    np.testing.assert_allclose(scene.acceleration(), expected.acceleration(), rtol=1e-14)
+    assert scene.invariants().potential_energy == pytest.approx(
+        expected.invariants().potential_energy, rel=1e-14, abs=0
+    )
 
 
 @pytest.mark.parametrize(
