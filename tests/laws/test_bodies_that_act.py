@@ -9,10 +9,9 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from own_bits import copies_have_their_own_bits
 
 import visviva as vv
-
-RNG = np.random.default_rng(11)
 
 
 def cluster(n: int) -> vv.Particles:
@@ -169,13 +168,7 @@ def test_they_have_their_own_bits_in_an_ensemble_and_on_every_tier(n: int, which
         else vv.PostNewtonian([n - 1, 0], 1.0, 20.0)
     )
     scene = vv.Scene(bodies, vv.Gravity(0.1, 0.3), force)
-    starts = bodies.position + 0.01 * RNG.normal(size=(11, n, 3))
-    masses = bodies.mass * RNG.uniform(0.9, 1.1, size=(11, n))
-    for how in ({"method": "rk4", "dt": 0.01}, {"method": "dop853", "rtol": 1e-10}):
-        together = scene.ensemble(position=starts, mass=masses).run(t=0.3, **how)
-        for copy in (0, 7, 10):
-            one = vv.Scene(vv.Particles(masses[copy], starts[copy], bodies.velocity), *scene.forces)
-            assert np.array_equal(one.run(t=0.3, **how).position, together.position[copy])
+    copies_have_their_own_bits(scene, 0.3, "rk4")
 
 
 def test_massless_bodies_before_and_after_feel_them_and_change_nothing() -> None:

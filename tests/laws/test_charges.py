@@ -6,10 +6,9 @@ at 1e-13 ends 1e-12 off the closed form.
 
 import numpy as np
 import pytest
+from own_bits import copies_have_their_own_bits
 
 import visviva as vv
-
-RNG = np.random.default_rng(20)
 
 
 def charges(n: int) -> tuple[vv.Particles, np.ndarray]:
@@ -45,13 +44,7 @@ def test_charges_push_and_pull(n: int, softening: float) -> None:
 def test_charges_have_their_own_bits_in_an_ensemble(n: int) -> None:
     bodies, q = charges(n)
     scene = vv.Scene(bodies, vv.Coulomb(q, k=0.5, softening=0.2), vv.Gravity(0.1, 0.3))
-    starts = bodies.position + 0.01 * RNG.normal(size=(11, n, 3))
-    masses = bodies.mass * RNG.uniform(0.9, 1.1, size=(11, n))
-    for how in ({"method": "leapfrog", "dt": 0.01}, {"method": "dop853", "rtol": 1e-10}):
-        together = scene.ensemble(position=starts, mass=masses).run(t=0.5, **how)
-        for copy in (0, 7, 10):
-            one = vv.Scene(vv.Particles(masses[copy], starts[copy], bodies.velocity), *scene.forces)
-            assert np.array_equal(one.run(t=0.5, **how).position, together.position[copy])
+    copies_have_their_own_bits(scene, 0.5, "leapfrog")
 
 
 def test_charges_keep_everything_and_two_laws_add() -> None:

@@ -3,11 +3,11 @@
 Bounds: what is drawn is the number itself, in other units: some roundings.
 """
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
 import pytest
+from drawn import columns, named, nothing_is_clipped
 
 import visviva as vv
 from visviva.geiger_marsden import compare_metal
@@ -17,14 +17,6 @@ from matplotlib.figure import Figure
 
 SILVER, GOLD = vv.datasets.geiger_marsden_1913().compare()
 TOUTATIS = vv.datasets.toutatis().compare()
-
-
-def named(axes: Any) -> dict[str, Any]:
-    return dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-
-
-def columns(line: Any) -> tuple[np.ndarray, np.ndarray]:
-    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
 
 
 def test_counts_of_1913_beside_the_law() -> None:
@@ -97,13 +89,8 @@ def test_toutatis_beside_what_radar_saw() -> None:
 @pytest.mark.parametrize("found", [GOLD, TOUTATIS], ids=["1913", "Toutatis"])
 def test_nothing_is_clipped_and_legends_lie_on_no_line(found: Any) -> None:
     figure = found.plot().figure
-    figure.savefig(BytesIO())
+    nothing_is_clipped(figure)
     for axes in figure.axes:
-        box = axes.get_tightbbox()
-        assert figure.bbox.padded(1).containsx(box.x0)
-        assert figure.bbox.padded(1).containsx(box.x1)
-        assert figure.bbox.padded(1).containsy(box.y0)
-        assert figure.bbox.padded(1).containsy(box.y1)
         legend = axes.get_legend()
         for line in axes.lines if legend else ():
             path = line.get_path().transformed(line.get_transform())
