@@ -101,6 +101,42 @@ def test_a_motion_that_comes_back_to_rest_is_not_blamed(method: vv.typing.Method
     assert np.abs(out.velocity[-1]).max() < 1e-2
 
 
+def test_copies_that_come_back_to_rest_are_not_blamed_beside_one_that_moves() -> None:
+    spring = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=4.0, length=0.0, anchor=[0.0, 0.0, 0.0])
+    scene = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5]), spring, vv.UniformField([0.0, 0.0, -9.8]))
+    velocity = np.zeros((3, 1, 3))
+    velocity[2, 0, 0] = 1.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene.ensemble(velocity=velocity).run(t=np.pi, method="leapfrog", dt=0.01)
+
+
+@pytest.mark.parametrize("size", [1.0, 1e10])
+def test_a_motion_from_rest_that_was_not_resolved_is_said(size: float) -> None:
+    spring = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=4.0 * size, length=0.0, anchor=[0.0, 0.0, 0.0])
+    body = vv.RigidBody(size, [1.0 * size, 2.0 * size, 2.5 * size])
+    with pytest.warns(vv.AccuracyWarning, match=r"off by 0\.025"):
+        vv.Scene(body, spring, vv.UniformField([0.0, 0.0, -9.8])).run(t=[6.5], method="leapfrog", dt=0.9)
+
+
+def test_an_error_of_a_hundredth_is_said() -> None:
+    """It is of kinetic + |potential|, however fast the body was from the start."""
+    scene = vv.Scene(vv.RigidBody(1.0, moments=[0.1, 0.2, 0.25], velocity=[0.0, 0.0, 40.0]), *ON_A_SPRING.body_forces)
+    with pytest.warns(vv.AccuracyWarning, match=r"off by 0\.014"):
+        scene.run(t=[2.0], method="rk4", dt=0.008)
+
+
+def test_copies_with_forces_of_their_own_are_looked_at_by_these() -> None:
+    """By those of another copy their energies would not stay."""
+    velocity = np.array([[[0.0, 4.0, 0.0], [0.0, 0.0, 0.0]], [[0.0, 8.0, 0.0], [0.0, 0.0, 0.0]]])
+    pair = vv.Particles([0.1], [[1.0, 0.0, 0.0]]), vv.RigidBody(10.0, [0.2, 0.3, 0.4])
+    copies = vv.Scene(*pair, vv.Gravity(1.0)).ensemble(velocity=velocity, parameters={"Gravity": {"G": [1.0, 4.0]}})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = copies.run(t=5.0, dt=0.005)
+    assert out.stats.evaluations > 2 * 10_000  # of both
+
+
 def test_bodies_that_end_in_one_place_are_no_error() -> None:
     """Of which no energy is told."""
     ball = vv.Particles([1.0], [[-1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])

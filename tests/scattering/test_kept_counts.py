@@ -191,6 +191,37 @@ def test_arrays_that_are_missing_or_do_not_fit_are_refused(good):
     assert refused(written(good, header | {"version": header["version"] + 1}, arrays))
 
 
+@pytest.mark.parametrize(
+    ("events", "says"),
+    [
+        ([], "counts of no events"),
+        ([[7, 0.0, 50]], "counts of no events"),
+        ([[7, 0, 50], [8, 0, 0.5]], "counts of no events"),
+        ([[-1, 0, 50]], "events that there are not"),
+        ([[2**64, 0, 50]], "events that there are not"),
+        ([[7, -1, 49]], "events that there are not"),
+        ([[7, 0, 50], [8, 3, 3]], "events that there are not"),
+        ([[7, 2**63 - 49, 2**63 + 1]], "events that there are not"),
+        ([[8, 0, 25], [7, 0, 25]], "events that are not sorted"),
+        ([[7, 0, 25], [7, 25, 50]], "events that are not sorted"),
+    ],
+)
+def test_what_is_wrong_with_events_is_said(events, says, tmp_path):
+    path = tmp_path / "counts.npz"
+    beam(50).save(path)
+    header, arrays = parts(path)
+    with pytest.raises(vv.InvalidInput, match=says):
+        vv.load(written(path, header | {"events": events}, arrays))
+
+
+def test_the_first_and_the_last_events_of_all_are_kept(tmp_path):
+    how = {"beam_energy": 1e3, "masses": (1.0, 4.0), "b_max": 2.0, "bins": 12}
+    for seed, first, n in ((0, 0, 1), (2**64 - 1, 2**63 - 50, 50)):
+        counted = S.monte_carlo(YUKAWA, **how, n_events=n, seed=seed, first_event=first)
+        counted.save(tmp_path / "counts.npz")
+        assert vv.load(tmp_path / "counts.npz") == counted
+
+
 @pytest.mark.parametrize("name", FOILS)
 def test_every_key_and_every_count_of_a_foil_is_looked_at(name, tmp_path):
     path = tmp_path / "counts.npz"
