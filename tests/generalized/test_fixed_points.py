@@ -98,3 +98,49 @@ def test_a_separatrix_comes_by_whose_saddle_is_outside() -> None:
     assert strong
     path = strong[0].get_paths()[0].vertices
     np.testing.assert_allclose(path[:, 1] ** 2 / 2 - np.cos(path[:, 0]), 1.0, rtol=0, atol=5e-3)  # a grid of 80 points
+
+
+def test_lines_of_a_portrait_have_as_many_points_between_them_and_separatrices_the_energy_of_their_saddle() -> None:
+    pytest.importorskip("matplotlib")
+    axes = vv.systems.pendulum(g=9.81, l=1.0).phase_portrait((-4.0, 4.5), (-5.0, 6.0), points=60)
+    theta, momentum = np.meshgrid(np.linspace(-4.0, 4.5, 60), np.linspace(-5.0, 6.0, 60))
+    energy = momentum**2 / 2 - 9.81 * np.cos(theta)
+    many, *strong = axes.collections
+    # The energy is one product and two sums.
+    np.testing.assert_allclose(many.levels, np.quantile(energy, np.linspace(0.0, 1.0, 24)), rtol=1e-14)
+    assert set(many.get_linewidths()) == {0.7}
+    assert len(strong) == 2
+    for lines in strong:
+        np.testing.assert_allclose(lines.levels, [9.81], rtol=1e-14)
+    for path in (many.get_paths()[5], many.get_paths()[15]):
+        q, p = path.vertices.T
+        level = p**2 / 2 - 9.81 * np.cos(q)
+        np.testing.assert_allclose(level, level[0], rtol=0, atol=0.1)  # between the places of a grid of 60
+
+
+@pytest.mark.parametrize(
+    ("position", "momentum", "centers"),
+    [
+        ((0.5, 8.0), (-8.0, 8.0), [[2 * np.pi, 0.0]]),
+        ((-0.5, 6.0), (-8.0, 8.0), [[0.0, 0.0]]),
+        ((-0.5, 8.0), (0.5, 8.0), []),
+        ((-0.5, 8.0), (-8.0, -0.5), []),
+        ((0.0, 2 * np.pi), (0.0, 8.0), [[0.0, 0.0], [2 * np.pi, 0.0]]),
+    ],
+)
+def test_centers_are_shown_where_the_portrait_reaches(
+    position: tuple[float, float], momentum: tuple[float, float], centers: list[list[float]]
+) -> None:
+    pytest.importorskip("matplotlib")
+    axes = vv.systems.pendulum(g=9.81, l=1.0).phase_portrait(position, momentum, points=40)
+    assert sorted(line.get_xydata()[0].tolist() for line in axes.lines) == centers
+
+
+def test_a_portrait_of_no_width_or_of_a_driven_system_is_refused() -> None:
+    swing = vv.systems.pendulum()
+    for ranges, name in (([(1.0, 1.0), (-1.0, 1.0)], "position"), ([(-1.0, 1.0), (2.0, 2.0)], "momentum")):
+        with pytest.raises(vv.InvalidInput, match=f"^{name}: expected the smaller end first"):
+            swing.phase_portrait(*ranges)
+    driven = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + q[0] * np.cos(t), ["x"])
+    with pytest.raises(vv.InvalidInput, match=r"^position: a portrait needs energy to be conserved"):
+        driven.phase_portrait((-1.0, 1.0), (-1.0, 1.0))
