@@ -2,6 +2,9 @@
 
 Integrals are asked for at 1e-13 and hold it; the oracle is `mpmath` at 30 digits. Where a tolerance is larger, the
 rounding of E or l is amplified by that much, as the line says.
+
+Bounds: places and velocities of conics go through Kepler's equation and an ellipse's turns, some ten roundings, and
+ten times that is allowed; 8e-10 is where `_central_orbit` takes an epicycle for a conic.
 """
 
 from typing import Any

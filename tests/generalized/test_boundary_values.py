@@ -1,4 +1,8 @@
-"""Motions through two places from starts that are far from them, and what is said where there are none."""
+"""Motions through two places from starts that are far from them, and what is said where there are none.
+
+Bounds: a solution misses its place by 1e-13 of its size or what round-off allows, which the slope of the place by the
+velocity amplifies: by 1e3 a thousandth before a conjugate point; of known velocities eight digits are written.
+"""
 
 from itertools import product
 
@@ -46,13 +50,13 @@ def test_conjugate_points_are_named() -> None:
     assert swing.boundary_value(np.pi, [-1.0]).velocity[0] == 0.3
     nearly = swing.boundary_value(np.pi - 1e-3, [0.5])
     wanted = (0.5 - np.cos(np.pi - 1e-3)) / np.sin(np.pi - 1e-3)
-    assert nearly.velocity[0] == pytest.approx(wanted, rel=1e-11)
+    assert nearly.velocity[0] == pytest.approx(wanted, rel=2e-13, abs=0)
 
 
 def test_where_there_is_none_the_nearest_miss_is_told() -> None:
     """q̇ of √(1 + p²) is below 1: nothing comes 3 far in a time of 2."""
     light = vv.Hamiltonian(lambda q, p, t: np.sqrt(1 + p[0] ** 2), ["x"], position=[0.0], momentum=[0.5])
-    assert light.boundary_value(2.0, [1.2]).momentum[0] == pytest.approx(0.75, rel=1e-12)
+    assert light.boundary_value(2.0, [1.2]).momentum[0] == pytest.approx(0.75, rel=1e-14, abs=0)
     with pytest.raises(vv.ConvergenceError, match="missed by"):
         light.boundary_value(2.0, [3.0])
 
@@ -70,7 +74,7 @@ def test_a_projectile_with_drag(velocity: list[float]) -> None:
     # x = (v + g/k) (1 − e^(−k t))/k − g t/k, with k = 0.2.
     reach = (1 - np.exp(-0.4)) / 0.2
     fall = 9.81 / 0.2
-    assert thrown.velocity == pytest.approx([6.0 / reach, (1.0 + fall * 2.0) / reach - fall], rel=1e-12)
+    assert thrown.velocity == pytest.approx([6.0 / reach, (1.0 + fall * 2.0) / reach - fall], rel=1e-12, abs=0)
 
 
 def lambert(velocity: np.ndarray, place: list[float], most: int = 3) -> list[float]:
@@ -95,7 +99,7 @@ def test_lamberts_problem_with_and_without_revolutions(velocity: list[float], t:
     )
     place = [-0.3, 1.2]
     found = planet.boundary_value(t, place)
-    assert min(abs(time - t) for time in lambert(found.velocity, place)) <= 1e-10
+    assert min(abs(time - t) for time in lambert(found.velocity, place)) <= 4e-13
     arrives(planet, t, place)
 
 

@@ -1,4 +1,8 @@
-"""Where constraints lose their rank on the way, no energy is lost in silence."""
+"""Where constraints lose their rank on the way, no energy is lost in silence.
+
+Bounds: a constraint is kept to some roundings, 1e-14, which near the change point the slope of one coordinate by the
+other amplifies; energies over ten turns part by 1e-14, and ten times that is allowed.
+"""
 
 import numpy as np
 import pytest
@@ -45,8 +49,8 @@ def test_a_change_point_is_named_or_passed(method: str, rtol: float) -> None:
 
 def test_up_to_the_change_point_the_motion_is_right() -> None:
     out = slider_crank().run(0.99 * CHANGE)
-    np.testing.assert_allclose(out["x"], 2 * np.cos(out["theta"]), atol=1e-12)
-    np.testing.assert_allclose(out.energy, out.energy[0], rtol=1e-11)
+    np.testing.assert_allclose(out["x"], 2 * np.cos(out["theta"]), rtol=0, atol=4e-14)
+    np.testing.assert_allclose(out.energy, out.energy[0], rtol=1e-14)
 
 
 @pytest.mark.parametrize("length", [1.2, 2.0])
@@ -61,4 +65,4 @@ def test_a_longer_rod_has_no_change_point(length: float) -> None:
     )
     out = crank.run(60.0)
     assert out["theta"][-1] > 2 * np.pi
-    np.testing.assert_allclose(out.energy, out.energy[0], rtol=1e-11)
+    np.testing.assert_allclose(out.energy, out.energy[0], rtol=2e-13)

@@ -1,4 +1,9 @@
-"""Constraints: kept to the last bits, with reactions of the right size and sign; moving, and of velocities."""
+"""Constraints: kept to the last bits, with reactions of the right size and sign; moving, and of velocities.
+
+Bounds: constraints are projected to the last bits, some EPSILON of the largest number; places and reactions follow
+closed forms to some ten roundings, 1e-14, and where a run of many turns lies between, to ten times what was reached;
+of other methods the bound is their order's error of steps of 0.01.
+"""
 
 import pickle
 from typing import Any
@@ -82,11 +87,11 @@ def test_reactions_are_forces_on_the_system_a_pendulums_tension() -> None:
     py, speed2 = out.position[:, 1], (out.velocity**2).sum(axis=1)
     tension = m * (9.81 * -py / l + speed2 / l)
     assert out.reactions.shape == (101, 1)
-    assert np.abs(out.reactions[:, 0] + tension).max() <= 1e-13 * tension.max()
+    assert np.abs(out.reactions[:, 0] + tension).max() <= 1e-14 * tension.max()
     # At the bottom m g (3 − 2 cos θ₀); no power: the energy is that of the start.
     bottom = vv.systems.pendulum(l=l, m=m, position=[theta0])
     quarter = rod.run(bottom.period() / 4)
-    assert quarter.reactions[-1, 0] == pytest.approx(-m * 9.81 * (3 - 2 * np.cos(theta0)), rel=1e-13)
+    assert quarter.reactions[-1, 0] == pytest.approx(-m * 9.81 * (3 - 2 * np.cos(theta0)), rel=1e-13, abs=0)
     # Over the top the rod pushes where a string would be slack.
     fast = rod.at(position=[0.0, -l], velocity=[np.sqrt(4.2 * 9.81 * l), 0.0]).run(np.linspace(0.0, 3.0, 301))
     top = np.argmax(fast.position[:, 1])
@@ -100,7 +105,7 @@ def test_atwoods_machine(m1: float, m2: float) -> None:
     assert machine.degrees_of_freedom == 1
     out = machine.run(np.linspace(0.0, 2.0, 21))
     acceleration = 9.81 * (m1 - m2) / (m1 + m2)
-    assert np.abs(out.position[:, 0] - 1.5 - acceleration * out.t**2 / 2).max() <= 1e-13 * (1 + abs(acceleration))
+    assert np.abs(out.position[:, 0] - 1.5 - acceleration * out.t**2 / 2).max() <= 1e-14 * (1 + abs(acceleration))
     assert np.abs(out.reactions[:, 0] + 2 * m1 * m2 * 9.81 / (m1 + m2)).max() <= 1e-14 * 9.81 * (m1 + m2)
     assert np.abs(out.position.sum(axis=1) - 3.0).max() <= 2 * EPSILON * np.abs(out.position).max()
 
@@ -118,8 +123,8 @@ def test_a_bead_on_a_turning_rod_is_a_constraint_that_moves() -> None:
     out = bead.run(np.linspace(0.0, 2.0, 21))
     r, rate = r0 * np.cosh(Omega * out.t), r0 * Omega * np.sinh(Omega * out.t)
     wanted = r[:, None] * np.stack([np.cos(Omega * out.t), np.sin(Omega * out.t)], axis=1)
-    assert np.abs(out.position - wanted).max() <= 1e-13 * r.max()
-    assert np.abs(out.reactions[:, 0] - 2 * m * Omega * rate).max() <= 1e-12 * rate.max()
+    assert np.abs(out.position - wanted).max() <= 1e-14 * r.max()
+    assert np.abs(out.reactions[:, 0] - 2 * m * Omega * rate).max() <= 2e-14 * rate.max()
     explicit = vv.systems.rod(m=m, Omega=Omega, position=[r0]).run(out.t)
     assert np.abs(explicit.position[:, 0] - r).max() <= 1e-14 * r.max()
 
@@ -142,7 +147,7 @@ def test_a_pendulum_on_a_moving_pivot_by_a_constraint() -> None:
     angle = vv.systems.moving_pivot(X=X, Y=Y, Omega=Omega, position=[theta0], velocity=[rate0]).run(times)["theta"]
     pivot = np.stack([X * np.cos(Omega * times), Y * np.sin(Omega * times)], axis=1)
     place = pivot + np.stack([np.sin(angle), -np.cos(angle)], axis=1)
-    assert np.abs(out.position - place).max() <= 1e-12
+    assert np.abs(out.position - place).max() <= 2e-14
     assert np.abs(((out.position - pivot) ** 2).sum(axis=1) - 1.0).max() <= 8 * EPSILON
     # From another time on, on and between nodes, by other methods, and back.
     on = moved.run(4.0).final
@@ -193,7 +198,7 @@ def test_a_disk_that_rolls_upright_goes_in_circles() -> None:
     out = disk.run(np.linspace(0.0, 20.0, 101))
     radius = R * 4.0 / 0.8
     wanted = radius * np.stack([np.sin(0.8 * out.t), 1 - np.cos(0.8 * out.t)], axis=1)
-    assert np.abs(out.position[:, :2] - wanted).max() <= 1e-12
+    assert np.abs(out.position[:, :2] - wanted).max() <= 5e-14
     # The ground pushes toward the center with m v φ̇.
     push = 2.0 * 0.8 * np.stack([-np.sin(0.8 * out.t), np.cos(0.8 * out.t)], axis=1)
     assert np.abs(out.reactions - push).max() <= 1e-12
@@ -212,7 +217,7 @@ def test_holonomic_reactions_come_first() -> None:
     )
     reactions = both.run(1.0).reactions[-1]
     # The table carries the weight; across (−2, 1), of square 5, the force of 5 is held with −1.
-    assert reactions == pytest.approx([9.81, -1.0], rel=1e-14)
+    assert reactions == pytest.approx([9.81, -1.0], rel=1e-14, abs=0)
 
 
 def test_a_start_off_its_constraints_is_refused_or_put_on_them() -> None:
@@ -242,5 +247,5 @@ def test_it_goes_on_and_pickles_with_constraints() -> None:
     whole, half = again.run([2.0, 4.0]), chain.run(2.0)
     assert np.array_equal(chain.run([2.0, 4.0]).position, whole.position)
     assert np.abs(half.position[-1] - whole.position[0]).max() < 1e-14
-    assert np.abs(half.final.run(4.0).position[-1] - whole.position[-1]).max() < 1e-12
+    assert np.abs(half.final.run(4.0).position[-1] - whole.position[-1]).max() < 1e-14
     assert gaps(half.final.run(np.linspace(2.0, 4.0, 9)).position).max() <= 4

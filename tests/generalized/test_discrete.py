@@ -1,4 +1,9 @@
-"""Variational integrators: the discrete action is stationary, and what follows from that follows."""
+"""Variational integrators: the discrete action is stationary, and what follows from that follows.
+
+Bounds: discrete equations are solved to the last bits, 2 EPSILON of their terms; two ways to the same step part by
+its roundings, 1e-15 a step and ten times that after a run; the midpoint is of order 2, whose error at these steps is
+6e-6.
+"""
 
 import math
 from typing import Any
@@ -164,7 +169,7 @@ def test_back_is_where_it_came_from(name: str, method: str) -> None:
     back = out.final.run(0.0, method=method, dt=0.1)
     assert np.abs(states(back)[-1] - states(out)[0]).max() <= 1e-13 * (1 + np.abs(states(out)).max()) * 10
     assert out.steps == back.steps == 20
-    assert out.longest_step == pytest.approx(0.1, rel=1e-12)
+    assert out.longest_step == pytest.approx(0.1, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(("method", "dt"), [("variational_midpoint", 1e-3), ("variational_lobatto8", 0.02)])
@@ -184,7 +189,7 @@ def test_what_is_what_by_another_name() -> None:
     pendulum = vv.systems.pendulum(position=[2.0])
     times = np.linspace(0.0, 5.0, 51)
     leapfrog = states(pendulum.run(times, method="leapfrog", dt=0.05))
-    assert np.abs(states(pendulum.run(times, method="variational_trapezoidal", dt=0.05)) - leapfrog).max() <= 1e-12
+    assert np.abs(states(pendulum.run(times, method="variational_trapezoidal", dt=0.05)) - leapfrog).max() <= 1e-14
 
 
 def galerkin_gauss(system: vv.Lagrangian, h: float) -> Any:

@@ -1,4 +1,9 @@
-"""Equations of motion: those that SymPy derives, in 30 digits; Newton's, for a Lagrangian in Cartesian coordinates."""
+"""Equations of motion: those that SymPy derives, in 30 digits; Newton's, for a Lagrangian in Cartesian coordinates.
+
+Bounds: random expressions lose by cancellation what their largest terms are above their sums: two EPSILON were seen
+of 1 + the largest, ten times that is allowed; of equations with constraints, EPSILON times the condition of their
+matrix, of which a third was seen.
+"""
 
 from typing import Any
 
@@ -69,7 +74,7 @@ def test_a_cartesian_lagrangian_is_newtons_second_law(seed: int) -> None:
         forces = [-exact(potential.diff(q), at) for q in Q]
         found = rates(system, 0.0, [at[q] for q in Q], [at[v] for v in V])
         wanted = np.array([float(force / m) for force, m in zip(forces, masses, strict=True)])
-        assert np.abs(found - wanted).max() <= 400 * EPSILON * (1.0 + np.abs(wanted).max())
+        assert np.abs(found - wanted).max() <= 20 * EPSILON * (1.0 + np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -95,9 +100,9 @@ def test_euler_and_lagrange_as_sympy_derives_them(seed: int) -> None:
         compare(system, mass, right, at)
         state = vv.Lagrangian.at(system, position=[at[q] for q in Q], velocity=[at[v] for v in V], t0=at[t])
         wanted = np.array([float(exact(p, at)) for p in momenta])
-        assert np.abs(state.momentum - wanted).max() <= 400 * EPSILON * (1 + np.abs(wanted).max())
+        assert np.abs(state.momentum - wanted).max() <= 20 * EPSILON * (1 + np.abs(wanted).max())
         energy = float(exact(sum(u * p for u, p in zip(V, momenta, strict=True)) - L, at))
-        assert abs(state.energy - energy) <= 400 * EPSILON * (10 + abs(energy))
+        assert abs(state.energy - energy) <= 20 * EPSILON * (10 + abs(energy))
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -110,7 +115,7 @@ def test_hamiltons_equations_as_sympy_derives_them(seed: int) -> None:
     for at in states(random, 4):
         found = rates(system, at[t], [at[q] for q in Q], [at[v] for v in V])
         wanted = np.array([float(exact(slope, at)) for slope in slopes])
-        assert np.abs(found - wanted).max() <= 400 * EPSILON * (1.0 + np.abs(wanted).max())
+        assert np.abs(found - wanted).max() <= 20 * EPSILON * (1.0 + np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -147,7 +152,7 @@ def test_equations_of_a_constrained_system(seed: int) -> None:
         condition = np.linalg.cond(np.array(whole.tolist(), dtype=float))
         size = 1.0 + max(abs(float(x)) for x in wanted)
         both = np.concatenate([found, columns[-2:]])
-        assert np.abs(both - np.array([float(x) for x in wanted])).max() <= 100 * EPSILON * size * condition
+        assert np.abs(both - np.array([float(x) for x in wanted])).max() <= 4 * EPSILON * size * condition
 
 
 def test_the_equations_are_shown() -> None:

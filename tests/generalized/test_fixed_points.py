@@ -1,4 +1,7 @@
-"""Equilibria of Hamiltonians, whether quadratic in the momenta or not, and the portraits that show them."""
+"""Equilibria of Hamiltonians, whether quadratic in the momenta or not, and the portraits that show them.
+
+Bounds: simple zeros are met to some ten roundings of numbers of size 1 or π, 1e-14, and so are the frequencies there.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +35,15 @@ def test_momenta_that_are_not_zero_at_rest() -> None:
     assert len(found) == 9
     for place in found:
         turns = np.rint(np.concatenate([place.position, place.momentum]) / np.pi)
-        np.testing.assert_allclose(np.concatenate([place.position, place.momentum]), np.pi * turns, atol=1e-14)
+        np.testing.assert_allclose(np.concatenate([place.position, place.momentum]), np.pi * turns, rtol=0, atol=1e-14)
         assert place.stable == bool(turns.sum() % 2)
 
 
 def test_a_zero_of_higher_order_is_found_once() -> None:
     """H = p⁴/4 − q²/2 + q⁴/4, of which the linear equations tell no stable state."""
     found = hamiltonian(p**4 / 4 - q**2 / 2 + q**4 / 4).equilibria()
-    np.testing.assert_allclose([place.position[0] for place in found], [-1.0, 0.0, 1.0], atol=1e-12)
-    np.testing.assert_allclose([place.momentum[0] for place in found], 0.0, atol=1e-12)
+    np.testing.assert_allclose([place.position[0] for place in found], [-1.0, 0.0, 1.0], rtol=0, atol=1e-14)
+    np.testing.assert_allclose([place.momentum[0] for place in found], 0.0, rtol=0, atol=1e-14)
     assert not any(place.stable for place in found)
 
 
@@ -50,18 +53,18 @@ def test_they_are_those_of_the_lagrangian() -> None:
     ours, others = pendulum.hamiltonian().equilibria(), pendulum.equilibria()
     near = [place for place in ours if place.stable]
     assert len(near) == 1
-    np.testing.assert_allclose(near[0].position, 0.0, atol=1e-12)
+    np.testing.assert_allclose(near[0].position, 0.0, rtol=0, atol=1e-14)
     (rest,) = [place for place in others if place.stable]
-    np.testing.assert_allclose(near[0].frequencies, rest.frequencies, rtol=1e-12)
+    np.testing.assert_allclose(near[0].frequencies, rest.frequencies, rtol=2e-14)
     np.testing.assert_array_equal(rest.momentum, [0.0, 0.0])
     for place in others:
-        assert min(np.abs(place.position - other.position).max() for other in ours) < 1e-9
+        assert min(np.abs(place.position - other.position).max() for other in ours) < 1e-14
 
 
 def test_along_a_cyclic_coordinate_one_is_told() -> None:
     x, y, px, py = sp.symbols("x y px py")
     (rest,) = vv.Hamiltonian((px**2 + py**2) / 2 + y**2 / 2, q=[x, y], p=[px, py]).equilibria()
-    np.testing.assert_allclose(rest.position, 0.0, atol=1e-14)
+    np.testing.assert_allclose(rest.position, 0.0, rtol=0, atol=1e-14)
     assert not rest.stable  # x runs away from any small px
 
 
@@ -83,7 +86,7 @@ def test_a_portrait_needs_no_square_of_the_momentum(width: float) -> None:
     portrait = hamiltonian(sp.cos(p) + sp.cos(q) + q / 100)
     axes = portrait.phase_portrait((-width, width), (-width, width), points=80)
     dots = [line for line in axes.get_lines() if line.get_marker() == "o"]
-    lines = [lines for lines in axes.collections if np.allclose(lines.get_linewidths(), 1.4)]
+    lines = [lines for lines in axes.collections if set(lines.get_linewidths()) == {1.4}]
     assert dots
     assert lines
 
@@ -91,7 +94,53 @@ def test_a_portrait_needs_no_square_of_the_momentum(width: float) -> None:
 def test_a_separatrix_comes_by_whose_saddle_is_outside() -> None:
     pytest.importorskip("matplotlib")
     axes = hamiltonian(p**2 / 2 - sp.cos(q)).phase_portrait((-3.0, 3.0), (-2.5, 2.5), points=80)
-    strong = [lines for lines in axes.collections if np.allclose(lines.get_linewidths(), 1.4)]
+    strong = [lines for lines in axes.collections if set(lines.get_linewidths()) == {1.4}]
     assert strong
     path = strong[0].get_paths()[0].vertices
-    np.testing.assert_allclose(path[:, 1] ** 2 / 2 - np.cos(path[:, 0]), 1.0, atol=5e-3)  # a grid of 80 points
+    np.testing.assert_allclose(path[:, 1] ** 2 / 2 - np.cos(path[:, 0]), 1.0, rtol=0, atol=5e-3)  # a grid of 80 points
+
+
+def test_lines_of_a_portrait_have_as_many_points_between_them_and_separatrices_the_energy_of_their_saddle() -> None:
+    pytest.importorskip("matplotlib")
+    axes = vv.systems.pendulum(g=9.81, l=1.0).phase_portrait((-4.0, 4.5), (-5.0, 6.0), points=60)
+    theta, momentum = np.meshgrid(np.linspace(-4.0, 4.5, 60), np.linspace(-5.0, 6.0, 60))
+    energy = momentum**2 / 2 - 9.81 * np.cos(theta)
+    many, *strong = axes.collections
+    # The energy is one product and two sums.
+    np.testing.assert_allclose(many.levels, np.quantile(energy, np.linspace(0.0, 1.0, 24)), rtol=1e-14)
+    assert set(many.get_linewidths()) == {0.7}
+    assert len(strong) == 2
+    for lines in strong:
+        np.testing.assert_allclose(lines.levels, [9.81], rtol=1e-14)
+    for path in (many.get_paths()[5], many.get_paths()[15]):
+        q, p = path.vertices.T
+        level = p**2 / 2 - 9.81 * np.cos(q)
+        np.testing.assert_allclose(level, level[0], rtol=0, atol=0.1)  # between the places of a grid of 60
+
+
+@pytest.mark.parametrize(
+    ("position", "momentum", "centers"),
+    [
+        ((0.5, 8.0), (-8.0, 8.0), [[2 * np.pi, 0.0]]),
+        ((-0.5, 6.0), (-8.0, 8.0), [[0.0, 0.0]]),
+        ((-0.5, 8.0), (0.5, 8.0), []),
+        ((-0.5, 8.0), (-8.0, -0.5), []),
+        ((0.0, 2 * np.pi), (0.0, 8.0), [[0.0, 0.0], [2 * np.pi, 0.0]]),
+    ],
+)
+def test_centers_are_shown_where_the_portrait_reaches(
+    position: tuple[float, float], momentum: tuple[float, float], centers: list[list[float]]
+) -> None:
+    pytest.importorskip("matplotlib")
+    axes = vv.systems.pendulum(g=9.81, l=1.0).phase_portrait(position, momentum, points=40)
+    assert sorted(line.get_xydata()[0].tolist() for line in axes.lines) == centers
+
+
+def test_a_portrait_of_no_width_or_of_a_driven_system_is_refused() -> None:
+    swing = vv.systems.pendulum()
+    for ranges, name in (([(1.0, 1.0), (-1.0, 1.0)], "position"), ([(-1.0, 1.0), (2.0, 2.0)], "momentum")):
+        with pytest.raises(vv.InvalidInput, match=f"^{name}: expected the smaller end first"):
+            swing.phase_portrait(*ranges)
+    driven = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + q[0] * np.cos(t), ["x"])
+    with pytest.raises(vv.InvalidInput, match=r"^position: a portrait needs energy to be conserved"):
+        driven.phase_portrait((-1.0, 1.0), (-1.0, 1.0))

@@ -1,4 +1,9 @@
-"""What is conserved, what is not, and by how much: energies, Jacobi's integral, momenta, brackets, work."""
+"""What is conserved, what is not, and by how much: energies, Jacobi's integral, momenta, brackets, work.
+
+Bounds: what is conserved changes by some roundings of its largest term in a step, and by a random walk of them over a
+run: 1e-14, and 1e-13 of energies that are differences of larger ones; a difference of order 8 with steps of 0.01 is
+off by 1e-13.
+"""
 
 from typing import Any
 
@@ -44,8 +49,8 @@ def test_what_is_said_to_be_conserved_is(name: str) -> None:
     assert list(changes) == system.conserved
     assert "energy" in changes
     assert max(changes.values()) <= (1.2e-13 if name == "double_pendulum" else 2e-14), changes
-    assert out.energy[0] == pytest.approx(system.energy, rel=1e-15)
-    assert out.momentum[0] == pytest.approx(system.momentum, rel=1e-15)
+    assert out.energy[0] == pytest.approx(system.energy, rel=1e-15, abs=0)
+    assert out.momentum[0] == pytest.approx(system.momentum, rel=1e-15, abs=0)
 
 
 def test_energy_for_a_long_time() -> None:
@@ -99,7 +104,7 @@ def test_broken_symmetry_drifts_and_the_expressions_know() -> None:
     whole = vv.Lagrangian(L, [x, y], parameters={eps: 0.0}, **how)
     spin = x * vy - y * vx
     turning = whole.evaluate(spin, trajectory=whole.run(T))
-    assert np.ptp(turning) <= 1e-13
+    assert np.ptp(turning) <= 1e-14
     broken = whole.at(parameters={eps: 0.1})
     assert np.ptp(broken.evaluate(spin, trajectory=broken.run(T))) > 0.05
     # Galilei: M R − P t of two bodies that push each other.
@@ -138,7 +143,7 @@ def test_dissipation_takes_twice_rayleighs_function() -> None:
     out = damped.run(np.linspace(0.0, 20.0, 101))
     rate, turn = 0.15, np.sqrt(4.0 - 0.15**2)
     wanted = np.exp(-rate * out.t) * (np.cos(turn * out.t) + (0.5 + rate) / turn * np.sin(turn * out.t))
-    assert np.abs(out.position[:, 0] - wanted).max() <= 1e-13
+    assert np.abs(out.position[:, 0] - wanted).max() <= 1e-14
     (a, b), (va, vb) = coordinates("a b")
     lost = (va - vb) ** 2 / 10 + va**4 * sp.cos(b) ** 2 / 20
     two = vv.Lagrangian((va**2 + vb**2) / 2 - a**2 - (a - b) ** 2, [a, b], dissipation=lost, position=[1.0, 0.0])
@@ -148,7 +153,7 @@ def test_dissipation_takes_twice_rayleighs_function() -> None:
     power = two.evaluate((va - vb) ** 2 / 5 + va**4 * sp.cos(b) ** 2 / 5, trajectory=out)[:, 0]
     simpson = np.ones(4001)
     simpson[1:-1:2], simpson[2:-1:2] = 4.0, 2.0
-    assert out.energy[0] - out.energy[-1] == pytest.approx(simpson @ power / 3000.0, rel=1e-11)
+    assert out.energy[0] - out.energy[-1] == pytest.approx(simpson @ power / 3000.0, rel=1e-11, abs=0)
 
 
 def test_a_driven_and_damped_oscillator_by_its_closed_form() -> None:
@@ -225,7 +230,7 @@ def test_a_bracket_with_h_is_the_rate_along_a_motion() -> None:
     out = system.run(5.0 + h * np.arange(-4, 5))
     values = system.evaluate(f, rate, trajectory=out)
     weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    assert weights @ values[:, 0] / h == pytest.approx(values[4, 1], rel=1e-12)
+    assert weights @ values[:, 0] / h == pytest.approx(values[4, 1], rel=1e-12, abs=0)
 
 
 def test_velocities_of_a_hamiltonian_are_rates_and_momenta_of_a_lagrangian_too() -> None:

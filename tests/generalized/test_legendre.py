@@ -1,4 +1,9 @@
-"""Legendre's transformation by numbers: closed forms, involution, Hamilton's equations, and what has no transform."""
+"""Legendre's transformation by numbers: closed forms, involution, Hamilton's equations, and what has no transform.
+
+Bounds: a transform is found to some roundings of its largest term, 1e-14, over sixty powers of ten 1e-13; the
+transform of a transform has that twice, conditioned by the masses; a difference of order 8 with steps of 0.01 is off
+by 5e-15.
+"""
 
 from typing import Any
 
@@ -19,8 +24,8 @@ def test_quartic_at_any_size() -> None:
     p = np.concatenate([-np.logspace(-30, 30, 61), np.logspace(-30, 30, 61)])[:, None]
     H = quartic().legendre_transform()
     q = np.zeros_like(p)
-    assert H(q, p) == pytest.approx(0.75 * 1.7 ** (-1 / 3) * np.abs(p[:, 0]) ** (4 / 3), rel=1e-13)
-    assert H.conjugate(q, p)[:, 0] == pytest.approx(np.cbrt(p[:, 0] / 1.7), rel=1e-13)
+    assert H(q, p) == pytest.approx(0.75 * 1.7 ** (-1 / 3) * np.abs(p[:, 0]) ** (4 / 3), rel=1e-13, abs=0)
+    assert H.conjugate(q, p)[:, 0] == pytest.approx(np.cbrt(p[:, 0] / 1.7), rel=1e-14, abs=0)
     assert H([0.0], [0.0]) == 0.0
 
 
@@ -35,9 +40,9 @@ def test_relativity() -> None:
     # Near the speed of light 1 − v² has lost (p/m)² of its digits.
     lost = 1.0 + (p**2).sum(axis=1, keepdims=True) / 4
     assert np.all(np.abs(light.conjugate(q, p) - p / energy[:, None]) <= 1e-14 * lost)
-    assert light(q, p) == pytest.approx(energy + q[:, 0] * q[:, 1] ** 2, rel=1e-12)
+    assert light(q, p) == pytest.approx(energy + q[:, 0] * q[:, 1] ** 2, rel=1e-12, abs=0)
     slopes, rates = light.gradient(q, p)
-    assert slopes == pytest.approx(np.stack([q[:, 1] ** 2, 2 * q[:, 0] * q[:, 1]], axis=1), rel=1e-13)
+    assert slopes == pytest.approx(np.stack([q[:, 1] ** 2, 2 * q[:, 0] * q[:, 1]], axis=1), rel=1e-13, abs=0)
     assert np.array_equal(rates, light.conjugate(q, p))
     back = vv.Hamiltonian(
         lambda q, p, t: np.sqrt(4 + p[0] ** 2 + p[1] ** 2) + q[0] * q[1] ** 2, ["x", "y"]
@@ -63,7 +68,7 @@ def test_of_quadratic_functions_it_is_the_expression(name: str) -> None:
     n = q.shape[1]
     scale = np.abs(columns[:, n]).max()
     assert transform(q, p) == pytest.approx(columns[:, n], abs=1e-13 * scale)
-    assert transform.conjugate(q, p) == pytest.approx(columns[:, :n], abs=1e-12 * np.abs(columns[:, :n]).max())
+    assert transform.conjugate(q, p) == pytest.approx(columns[:, :n], abs=4e-14 * np.abs(columns[:, :n]).max())
     # The transform of the transform is the function, and p is given back.
     v = transform.conjugate(q, p)
     again = hamiltonian.legendre_transform()
@@ -83,22 +88,22 @@ def test_hamiltons_equations_of_a_motion() -> None:
     )
     out = system.run(t=np.linspace(0.0, 2.0, 41))
     H = system.legendre_transform()
-    assert H(out.position, out.momentum) == pytest.approx(out.energy, rel=1e-13)
+    assert H(out.position, out.momentum) == pytest.approx(out.energy, rel=1e-14, abs=0)
     slopes, rates = H.gradient(out.position, out.momentum)
-    assert rates == pytest.approx(out.velocity, abs=1e-13)
+    assert rates == pytest.approx(out.velocity, abs=1e-14)
     h = 1e-2
     around = system.run(t=1.0 + h * np.arange(-4, 5))
     weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
     assert weights @ around.momentum / h == pytest.approx(
-        -H.gradient(around.position[4], around.momentum[4])[0], abs=1e-11
+        -H.gradient(around.position[4], around.momentum[4])[0], abs=5e-14
     )
     assert slopes.shape == (41, 2)
 
 
 def test_the_time_is_that_of_the_start_or_the_one_given() -> None:
     driven = vv.Lagrangian(lambda q, v, t: np.exp(t) * v[0] ** 4 / 4, ONE).legendre_transform()
-    assert driven.conjugate([0.0], [8.0]) == pytest.approx([2.0], rel=1e-14)
-    assert driven.conjugate([0.0], [8.0], t=3.0) == pytest.approx([2.0 / np.e], rel=1e-14)
+    assert driven.conjugate([0.0], [8.0]) == pytest.approx([2.0], rel=1e-14, abs=0)
+    assert driven.conjugate([0.0], [8.0], t=3.0) == pytest.approx([2.0 / np.e], rel=1e-14, abs=0)
 
 
 BENT = vv.Lagrangian(lambda q, v, t: v[0] ** 4 / 4 - v[0] ** 2 / 2, ONE)
@@ -139,12 +144,12 @@ def test_starts_by_momenta_and_by_velocities() -> None:
         lambda q, v, t, m: m * np.exp(t) * (v[0] ** 2 / 2 + v[0] ** 4 / 4) * (1 + q[0] ** 2), ONE, parameters={"m": 1.0}
     )
     moved = system.at(position=[2.0], momentum=[3.0], parameters={"m": 0.1}, t0=1.0)
-    assert moved.momentum == pytest.approx([3.0], rel=1e-14)
+    assert moved.momentum == pytest.approx([3.0], rel=1e-14, abs=0)
     assert (moved.t0, moved.parameters["m"], moved.position[0]) == (1.0, 0.1, 2.0)
     many = system.ensemble(position=[[0.0], [1.0]], momentum=[[1.0], [3.0]])
-    assert [many[k].momentum[0] for k in range(2)] == pytest.approx([1.0, 3.0], rel=1e-14)
+    assert [many[k].momentum[0] for k in range(2)] == pytest.approx([1.0, 3.0], rel=1e-14, abs=0)
     same = system.at(position=[0.5]).ensemble(momentum=[[1.0], [3.0]])
     assert [(same[k].position[0], round(same[k].momentum[0], 12)) for k in range(2)] == [(0.5, 1.0), (0.5, 3.0)]
     double = vv.systems.double_pendulum(position=[0.3, 0.9])
     hamiltonian = double.hamiltonian().at(velocity=[0.5, -0.2])
-    assert hamiltonian.momentum == pytest.approx(double.at(velocity=[0.5, -0.2]).momentum, rel=1e-14)
+    assert hamiltonian.momentum == pytest.approx(double.at(velocity=[0.5, -0.2]).momentum, rel=1e-14, abs=0)

@@ -1,4 +1,7 @@
-"""Moving pictures of systems: points are where the masses are, which their energy tells."""
+"""Moving pictures of systems: points are where the masses are, which their energy tells.
+
+Bounds: sines, cosines and lengths of some products, 1e-14 of them.
+"""
 
 import pickle
 from pathlib import Path
@@ -58,8 +61,10 @@ def test_masses_at_the_points_have_the_energy_of_the_system(name: str) -> None:
 def test_guides_turn_and_shake_as_they_are_told() -> None:
     t = np.linspace(0.0, 1.0, 11)
     rod = positions(vv.systems.rod(Omega=2.0).run(t))[:, 1]
-    np.testing.assert_allclose(np.arctan2(rod[:, 1], rod[:, 0]), (2.0 * t + np.pi) % (2 * np.pi) - np.pi, atol=1e-14)
-    np.testing.assert_allclose(np.hypot(*rod.T), np.cosh(2.0 * t), rtol=1e-13)
+    np.testing.assert_allclose(
+        np.arctan2(rod[:, 1], rod[:, 0]), (2.0 * t + np.pi) % (2 * np.pi) - np.pi, rtol=0, atol=1e-14
+    )
+    np.testing.assert_allclose(np.hypot(*rod.T), np.cosh(2.0 * t), rtol=1e-14)
     hoop = positions(vv.systems.hoop(Omega=2.0, R=3.0).run(t))[:, 1]
     np.testing.assert_allclose(np.linalg.norm(hoop, axis=1), 3.0, rtol=1e-14)
     shaken = vv.systems.kapitza().run(t)

@@ -1,4 +1,8 @@
-"""Noether's theorem: symmetries that textbooks know, their momenta along motions, and transformations that are none."""
+"""Noether's theorem: symmetries that textbooks know, their momenta along motions, and transformations that are none.
+
+Bounds: residuals and what stays along a motion are sums of some ten products of numbers of size 1, 1e-14 and twice
+that.
+"""
 
 import pickle
 from collections.abc import Callable
@@ -101,7 +105,7 @@ def test_symmetries(name: str) -> None:
     system, xi, tau, wanted = SYMMETRIES[name]
     found = system.noether(xi, time_shift=tau)
     assert found.holds, found
-    assert found.residual <= 1e-13
+    assert found.residual <= 1e-14
     out = system.run(T)
     along = found.conserved(out)
     values = np.array([wanted(*each) for each in zip(out.position, out.velocity, out.t, strict=True)])
@@ -138,7 +142,7 @@ def test_the_potentials_that_a_helix_allows() -> None:
     system = vv.Lagrangian(L, ["x", "y", "z"], parameters={"c": pitch}, **start)
     found = system.noether(screw)
     assert found.holds
-    assert np.ptp(found.conserved(system.run(T))) <= 1e-12
+    assert np.ptp(found.conserved(system.run(T))) <= 2e-14
     assert not system.noether(lambda q, v, t, c: [-q[1], q[0], 1.01 * c]).holds
 
 
@@ -175,7 +179,7 @@ def test_forces_and_constraints_must_allow_it() -> None:
     )
     found = ring.noether(turn)
     assert found.holds
-    assert np.ptp(found.conserved(ring.run(T))) <= 1e-13
+    assert np.ptp(found.conserved(ring.run(T))) <= 1e-14
     assert ring.noether([1, 0]).reason == "it leaves constraint 0"
     skate = vv.Lagrangian(
         lambda q, v, t: (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) / 2,

@@ -1,4 +1,8 @@
-"""Trajectories to 25 digits, from expressions and from functions: every digit that their conditioning allows."""
+"""Trajectories to 25 digits, from expressions and from functions: every digit that their conditioning allows.
+
+Bounds: a few times the worst error that was seen of all systems, in EPSILON of the largest number; of fixed orders
+what their error is at the step that they choose.
+"""
 
 import json
 from pathlib import Path

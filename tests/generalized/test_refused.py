@@ -1,4 +1,7 @@
-"""What cannot be run is refused before anything runs, by name and with what to do."""
+"""What cannot be run is refused before anything runs, by name and with what to do.
+
+Bounds: energies next to a singularity, where potentials are 1e4 times the energy.
+"""
 
 import inspect
 import math

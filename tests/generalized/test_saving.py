@@ -1,6 +1,5 @@
 """Saved runs in generalized coordinates: all comes back, damaged files are refused, earlier versions load."""
 
-import json
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from kept_files import parts, refused, the_old_file_stays, written
 
 import visviva as vv
 from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
@@ -133,32 +133,9 @@ def test_of_functions_and_expressions_as_events_words_are_kept(tmp_path: Path) -
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "run.npz"
-    bead().run(1.0).save(path)
-    before = path.read_bytes()
-
-    def full_disk(file: Any, **_: object) -> None:
-        file.write(b"half")
-        raise OSError("no space left")
-
-    monkeypatch.setattr(np, "savez", full_disk)
-    with pytest.raises(OSError, match="no space left"):
-        bead().run(2.0).save(path)
-    assert path.read_bytes() == before
-    assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
+    the_old_file_stays(tmp_path / "run.npz", bead().run(1.0), bead().run(2.0), monkeypatch)
     with pytest.raises(vv.InvalidInput, match="path"):
         bead().run(1.0).save(3)  # type: ignore[arg-type]
-
-
-def parts(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    with np.load(path) as file:
-        arrays = dict(file)
-    return json.loads(arrays.pop("header").tobytes()), arrays
-
-
-def written(path: Path, header: object, arrays: dict[str, np.ndarray]) -> Path:
-    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
-    return path
 
 
 def use(out: Any) -> None:
@@ -172,14 +149,7 @@ def use(out: Any) -> None:
 
 def refused_or_whole(path: Path) -> bool:
     """Whether the file is refused by name; if it loads, nothing fails later but the run of a changed system."""
-    try:
-        out = vv.load(path)
-    except vv.InvalidInput as error:
-        if error.argument != "path":
-            raise
-        return True
-    use(out)
-    return False
+    return refused(path, use)
 
 
 @pytest.fixture(params=["one", "ensemble"])

@@ -1,4 +1,8 @@
-"""Walls (a/x)ⁿ, which nothing passes and no stage of a long step feels: steps through them are taken again."""
+"""Walls (a/x)ⁿ, which nothing passes and no stage of a long step feels: steps through them are taken again.
+
+Bounds: a few roundings of an energy of size 1; copies and one alone part by the rounding of a lane, which a wall
+amplifies by its steepness, to 6e-15.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +37,7 @@ def test_two_balls_in_a_trap_do_not_change_places() -> None:
     wall = (sp.Float(0.015) / (y - x)) ** 12
     balls = vv.Lagrangian((vx**2 + vy**2) / 2 - (x**2 + y**2) / 2 - wall, [x, y], position=[-1.0, 0.8])
     right = balls.run(20.0, method="dop853", rtol=1e-13, max_step=1e-4).position[-1]
-    np.testing.assert_allclose(balls.run(20.0).position[-1], right, atol=1e-4)
+    np.testing.assert_allclose(balls.run(20.0).position[-1], right, rtol=0, atol=1e-4)
 
 
 def test_copies_have_the_bits_they_have_alone() -> None:
@@ -58,7 +62,7 @@ def test_what_stays_finite_where_it_divides_by_zero_is_no_pole() -> None:
     swing = vv.Lagrangian(vx**2 / 2 + sp.sin(x) / x, [x], position=[1.0])
     out = swing.run(50.0)
     assert out.status is vv.Status.OK
-    assert np.ptp(out.energy) < 1e-12
+    assert np.ptp(out.energy) < 1e-14
 
 
 def test_outputs_events_and_momenta_lead_to_the_same_end() -> None:
@@ -82,7 +86,7 @@ def test_walls_that_move_and_beads_on_wires() -> None:
     )
     for system in (swung, bead):
         right = system.run(2.0, method="dop853", rtol=1e-13, max_step=1e-4).position[-1]
-        np.testing.assert_allclose(system.run(2.0).position[-1], right, atol=1e-9)
+        np.testing.assert_allclose(system.run(2.0).position[-1], right, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("threads", [1, 3])
@@ -93,5 +97,5 @@ def test_walls_of_copies_are_their_own(threads: int) -> None:
     many = ball.ensemble(parameters={a: walls}).run([3.0], threads=threads)
     for index in (0, 3, 8, 90, 179):
         alone = floor(walls[index], 12).run([3.0])
-        assert many.position[index, 0] == pytest.approx(alone.position[0], abs=1e-9)
+        assert many.position[index, 0] == pytest.approx(alone.position[0], abs=1e-13)
     assert (many.position[:9] == many.position[9:18]).all()

@@ -1,4 +1,9 @@
-"""Ready-made systems: that they are what they say, take what they are given, and need no SymPy."""
+"""Ready-made systems: that they are what they say, take what they are given, and need no SymPy.
+
+Bounds: accelerations and momenta are sums of some ten products, 1e-14; motions in closed form to ten times the
+roundings of their phases; a difference of order 8 with steps of 1e-3 divides roundings by that, 5e-14 and ten times
+that is allowed.
+"""
 
 import inspect
 import pickle
@@ -83,8 +88,8 @@ def test_a_charge_feels_the_force_of_lorentz() -> None:
     ahead = charge.run(1e-3 * np.arange(1.0, 5.0))
     weights = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
     a = weights @ (ahead.velocity - out.velocity) / 1e-3
-    assert a == pytest.approx(-1.5 / 2.0 * (E + np.cross(v, B)), rel=1e-11)
-    assert charge.momentum == pytest.approx(2.0 * v - 1.5 * np.cross(B, r) / 2, rel=1e-14)
+    assert a == pytest.approx(-1.5 / 2.0 * (E + np.cross(v, B)), rel=5e-13, abs=0)
+    assert charge.momentum == pytest.approx(2.0 * v - 1.5 * np.cross(B, r) / 2, rel=1e-14, abs=0)
 
 
 def test_moving_pivots_accelerations() -> None:
@@ -93,11 +98,11 @@ def test_moving_pivots_accelerations() -> None:
     for t in (0.0, 0.3, 1.1):
         x, y = -X * Omega**2 * np.cos(Omega * t), -Y * Omega**2 * np.sin(Omega * t)
         found = pivot._model.rates(np.array([t]), np.array([[0.7, 0.2]]), pivot._values[None, :])[0, 0]
-        assert found == pytest.approx(-((g + y) * np.sin(0.7) + x * np.cos(0.7)) / l, rel=1e-14)
+        assert found == pytest.approx(-((g + y) * np.sin(0.7) + x * np.cos(0.7)) / l, rel=1e-14, abs=0)
     kapitza = vv.systems.kapitza(a=0.4, l=l, Omega=Omega, position=[0.7])
     found = kapitza._model.rates(np.array([0.3]), np.array([[0.7, 0.0]]), kapitza._values[None, :])[0, 0]
     y = -0.4 * Omega**2 * np.cos(Omega * 0.3)
-    assert found == pytest.approx(-(g + y) * np.sin(0.7) / l, rel=1e-14)
+    assert found == pytest.approx(-(g + y) * np.sin(0.7) / l, rel=1e-14, abs=0)
 
 
 def test_kapitzas_pendulum_stands_where_it_should() -> None:
@@ -140,9 +145,9 @@ def test_swinging_atwood_is_integrable_for_three_to_one() -> None:
         s, c = np.sin(theta / 2), np.cos(theta / 2)
         return r**2 * w * (v * c - r * w / 2 * s) + sign * r**2 * s * c**2
 
-    assert min(np.ptp(integral(sign)) for sign in (1.0, -1.0)) < 1e-12
+    assert min(np.ptp(integral(sign)) for sign in (1.0, -1.0)) < 1e-14
     other = system.at(parameters={"counterweight": 2.5}).run(out.t)
-    assert np.ptp(other.energy) < 1e-13
+    assert np.ptp(other.energy) < 1e-14
 
 
 def test_potentials_of_central_forces() -> None:
@@ -151,7 +156,7 @@ def test_potentials_of_central_forces() -> None:
     r, phi = out.position.T
     place = np.stack([r * np.cos(phi), r * np.sin(phi)], axis=1)
     wanted = np.stack([np.cos(2 * out.t), 0.25 * np.sin(2 * out.t)], axis=1)
-    assert np.abs(place - wanted).max() < 1e-12
+    assert np.abs(place - wanted).max() < 1e-14
     assert vv.systems.central_force(parameters={"k": 2.0}).parameters == {"m": 1.0, "k": 2.0}
 
 

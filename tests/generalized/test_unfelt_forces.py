@@ -1,4 +1,8 @@
-"""Forces that are not felt where a run begins, far ahead or to come with the time; and zeros that are none."""
+"""Forces that are not felt where a run begins, far ahead or to come with the time; and zeros that are none.
+
+Bounds: times and places of sections to some roundings of numbers up to 30, 1e-13; an energy over a wall a hundred
+times steeper than the motion, ten times what is lost.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +44,7 @@ def test_a_step_of_potential_between_two_stages_is_met() -> None:
     """A wall of tanh, 0.01 wide, at which the energy 1/2 turns back: no force is left on either side."""
     system = vv.Lagrangian(vx**2 / 2 - sp.tanh((x - 5.3) * 100) - x / 1000, [x], position=[0.0], velocity=[1.0])
     out = system.run(10.0)
-    np.testing.assert_allclose(out.energy[-1], out.energy[0], rtol=1e-10)
+    np.testing.assert_allclose(out.energy[-1], out.energy[0], rtol=2e-13)
     assert out.velocity[-1, 0] < 0.0
 
 
@@ -107,14 +111,14 @@ def test_jumps_and_poles_are_no_zeros() -> None:
     """An angle passes from π to −π, 1/x and a tangent change their sign at infinity: none of these is a section."""
     oscillator = vv.Lagrangian((vx**2 - x**2) / 2, [x], position=[1.0], velocity=[0.2])
     down = oscillator.poincare(sp.atan2(vx, x), 10.0, direction=-1)
-    np.testing.assert_allclose(down.t, np.arctan(0.2) + np.array([0.0, 2.0 * np.pi]), atol=1e-12)
+    np.testing.assert_allclose(down.t, np.arctan(0.2) + np.array([0.0, 2.0 * np.pi]), rtol=0, atol=1e-13)
     assert len(oscillator.poincare(sp.atan2(vx, x), 10.0, direction=1)) == 0
     assert len(oscillator.poincare(1 / x, 6.0, direction=0)) == 0
     at_zero = oscillator.poincare(sp.tan(2 * x), 6.0, direction=0).position[:, 0]
-    np.testing.assert_allclose(np.sin(2 * at_zero), 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.sin(2 * at_zero), 0.0, rtol=0, atol=1e-14)
     turning = vv.systems.pendulum(position=[0.1], velocity=[8.0])
     wrapped = turning.poincare(lambda q, v, t, **_: np.arctan2(np.sin(q[0]), np.cos(q[0])), 5.0, direction=0)
-    np.testing.assert_allclose(wrapped.position[:, 0] / (2.0 * np.pi), np.arange(1.0, 6.0), atol=1e-12)
+    np.testing.assert_allclose(wrapped.position[:, 0] / (2.0 * np.pi), np.arange(1.0, 6.0), rtol=0, atol=5e-14)
 
 
 @pytest.mark.parametrize(("middle", "width"), [(50, 0.01), (20, 0.01), (7.77, 0.01)])
@@ -123,5 +127,5 @@ def test_a_short_pulse_that_no_look_ahead_meets(middle: float, width: float) -> 
     force = 100 * x * sp.exp(-(((vv.time - middle) / sp.Float(width)) ** 2))
     out = vv.Lagrangian(vx**2 / 2 + force, [x], position=[0.0]).run(100.0, max_steps=100_000)
     kick = 100 * np.sqrt(np.pi) * width
-    assert out.velocity[-1, 0] == pytest.approx(kick, rel=1e-9)
-    assert out.position[-1, 0] == pytest.approx(kick * (100.0 - middle), rel=1e-9)
+    assert out.velocity[-1, 0] == pytest.approx(kick, rel=1e-9, abs=0)
+    assert out.position[-1, 0] == pytest.approx(kick * (100.0 - middle), rel=1e-9, abs=0)

@@ -1,4 +1,8 @@
-"""What `auto` takes: series where few bodies are coupled by forces that have them, else Verner's 9(8)."""
+"""What `auto` takes: series where few bodies are coupled by forces that have them, else Verner's 9(8).
+
+Bounds: a pulse is integrated to rtol = 1e-9 of its height of 200, in steps across 1/300 of the time; ten times what
+is reached.
+"""
 
 import numpy as np
 import pytest
@@ -77,7 +81,9 @@ def test_a_pulse_within_a_long_free_way_is_felt() -> None:
     pulse = vv.ExpressionForce(force=lambda r, v, t: (200.0 * np.exp(-(((t - 3.0) / 0.02) ** 2)), 0.0, 0.0))
     scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]), pulse)
     for method in ("auto", "verner98"):
-        assert scene.run(t=6.0, method=method).velocity[-1, 0, 0] == pytest.approx(4.0 * np.sqrt(np.pi), rel=1e-8)
+        assert scene.run(t=6.0, method=method).velocity[-1, 0, 0] == pytest.approx(
+            4.0 * np.sqrt(np.pi), rel=4e-10, abs=0
+        )
     assert "longest step" in str(scene.plan(t=6.0))
     assert "longest step" not in str(scene.plan(t=6.0, max_step=1.0))
 

@@ -1,14 +1,17 @@
-"""Oblate bodies and the first post-Newtonian correction: against digits, and by the precessions known of them."""
+"""Oblate bodies and the first post-Newtonian correction: against digits, and by the precessions known of them.
+
+Bounds: at rtol = 1e-12 the energy of 20 units of time drifts by 1e-12 and the angular momentum along the axis by half
+of that; momenta are sums of a few products.
+"""
 
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from own_bits import copies_have_their_own_bits
 
 import visviva as vv
-
-RNG = np.random.default_rng(11)
 
 
 def cluster(n: int) -> vv.Particles:
@@ -60,8 +63,8 @@ def test_oblate_pulls_are_the_gradient_of_the_zonal_potential(n: int) -> None:
     np.testing.assert_allclose(scene.acceleration() * bodies.mass[:, None], force, rtol=0, atol=4e-15 * size * n)
     potential = scene.invariants().potential_energy
     # The numbers 0.3, 0.7 … and the axis are rounded.
-    assert potential == pytest.approx(float(energy), rel=1e-14)
-    assert scene.run(t=1e-9, record="virial").virial[0] == pytest.approx(float(virial), rel=1e-12)
+    assert potential == pytest.approx(float(energy), rel=1e-14, abs=0)
+    assert scene.run(t=1e-9, record="virial").virial[0] == pytest.approx(float(virial), rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("inclination", [0.3, 1.2, 2.0])
@@ -106,7 +109,7 @@ def test_what_oblate_bodies_conserve() -> None:
     assert table.energy.max < 1e-10
     assert table.momentum.max < 1e-14
     ell = out.angular_momentum
-    assert np.ptp(ell[:, 2]) < 1e-10
+    assert np.ptp(ell[:, 2]) < 5e-12
     assert np.ptp(ell[:, 0]) > 1e-4
 
 
@@ -130,7 +133,7 @@ def test_the_perihelion_of_mercury_advances_by_43_seconds_a_century() -> None:
     advance = (angle[64:].mean() - angle[:64].mean()) / turns
     expected = 6 * np.pi * gm / (c * c * a * (1 - e * e))
     # The next order is 1e-7 of it; round-off of 415 turns at 1e-13 is 1e-10 rad of 5e-7 a turn · 415.
-    assert advance == pytest.approx(expected, rel=2e-5)
+    assert advance == pytest.approx(expected, rel=2e-5, abs=0)
     assert advance * century / period * 180 / np.pi * 3600 == pytest.approx(42.98, abs=0.01)
 
 
@@ -165,13 +168,7 @@ def test_they_have_their_own_bits_in_an_ensemble_and_on_every_tier(n: int, which
         else vv.PostNewtonian([n - 1, 0], 1.0, 20.0)
     )
     scene = vv.Scene(bodies, vv.Gravity(0.1, 0.3), force)
-    starts = bodies.position + 0.01 * RNG.normal(size=(11, n, 3))
-    masses = bodies.mass * RNG.uniform(0.9, 1.1, size=(11, n))
-    for how in ({"method": "rk4", "dt": 0.01}, {"method": "dop853", "rtol": 1e-10}):
-        together = scene.ensemble(position=starts, mass=masses).run(t=0.3, **how)
-        for copy in (0, 7, 10):
-            one = vv.Scene(vv.Particles(masses[copy], starts[copy], bodies.velocity), *scene.forces)
-            assert np.array_equal(one.run(t=0.3, **how).position, together.position[copy])
+    copies_have_their_own_bits(scene, 0.3, "rk4")
 
 
 def test_massless_bodies_before_and_after_feel_them_and_change_nothing() -> None:

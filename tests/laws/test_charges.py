@@ -1,11 +1,14 @@
-"""Charges that push and pull each other."""
+"""Charges that push and pull each other.
+
+Bounds: sums of a few terms in another order, 1e-14 of them; at rtol = 1e-12 what is kept drifts by 1e-13, and a run
+at 1e-13 ends 1e-12 off the closed form.
+"""
 
 import numpy as np
 import pytest
+from own_bits import copies_have_their_own_bits
 
 import visviva as vv
-
-RNG = np.random.default_rng(20)
 
 
 def charges(n: int) -> tuple[vv.Particles, np.ndarray]:
@@ -41,13 +44,7 @@ def test_charges_push_and_pull(n: int, softening: float) -> None:
 def test_charges_have_their_own_bits_in_an_ensemble(n: int) -> None:
     bodies, q = charges(n)
     scene = vv.Scene(bodies, vv.Coulomb(q, k=0.5, softening=0.2), vv.Gravity(0.1, 0.3))
-    starts = bodies.position + 0.01 * RNG.normal(size=(11, n, 3))
-    masses = bodies.mass * RNG.uniform(0.9, 1.1, size=(11, n))
-    for how in ({"method": "leapfrog", "dt": 0.01}, {"method": "dop853", "rtol": 1e-10}):
-        together = scene.ensemble(position=starts, mass=masses).run(t=0.5, **how)
-        for copy in (0, 7, 10):
-            one = vv.Scene(vv.Particles(masses[copy], starts[copy], bodies.velocity), *scene.forces)
-            assert np.array_equal(one.run(t=0.5, **how).position, together.position[copy])
+    copies_have_their_own_bits(scene, 0.5, "leapfrog")
 
 
 def test_charges_keep_everything_and_two_laws_add() -> None:
@@ -55,11 +52,11 @@ def test_charges_keep_everything_and_two_laws_add() -> None:
     scene = vv.Scene(bodies, vv.Coulomb(q, k=0.5, softening=0.1))
     table = scene.run(t=np.linspace(0, 2, 9), rtol=1e-12).conservation()
     assert all(row.conserved for row in table.rows)
-    assert all(row.max < 1e-10 for row in table.rows)
+    assert all(row.max < 2e-12 for row in table.rows)
     both = vv.Scene(bodies, vv.Coulomb(q, k=0.5), vv.Coulomb(2 * q, k=0.25))
     one = vv.Scene(bodies, vv.Coulomb(q, k=1.5))
     np.testing.assert_allclose(both.acceleration(), one.acceleration(), rtol=1e-14, atol=1e-15)
-    assert both.invariants().potential_energy == pytest.approx(one.invariants().potential_energy, rel=1e-14)
+    assert both.invariants().potential_energy == pytest.approx(one.invariants().potential_energy, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("exponent", [-498, -63, 300, 498])
@@ -68,8 +65,10 @@ def test_charges_of_any_size(exponent: int) -> None:
     bodies, q = charges(9)
     expected = vv.Scene(bodies, vv.Coulomb(q, k=1.0))
     scene = vv.Scene(bodies, vv.Coulomb(q * 2.0**exponent, k=2.0 ** (-2 * exponent)))
-    np.testing.assert_allclose(scene.acceleration(), expected.acceleration(), rtol=1e-13)
-    assert scene.invariants().potential_energy == pytest.approx(expected.invariants().potential_energy, rel=1e-13)
+    np.testing.assert_allclose(scene.acceleration(), expected.acceleration(), rtol=1e-14)
+    assert scene.invariants().potential_energy == pytest.approx(
+        expected.invariants().potential_energy, rel=1e-14, abs=0
+    )
 
 
 @pytest.mark.parametrize(

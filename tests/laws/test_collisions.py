@@ -1,4 +1,8 @@
-"""Spheres that touch: where, and what becomes of them."""
+"""Spheres that touch: where, and what becomes of them.
+
+Bounds: impulses, and what they keep, are sums of a few products of numbers of size 1: 1e-14 of them, volumes and
+masses that are added 1e-15; oblique ones lose a digit to the direction between the centers.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +24,8 @@ def test_head_on(method: str, restitution: float, masses: tuple[float, float]) -
     out = head_on(*masses).run([0.0, 1.0, 1.625, 2.0], collisions="bounce", restitution=restitution, **how(method))
     table = out.collisions
     # A sum of a hundred steps, each rounded.
-    assert table.t == pytest.approx([1.625], rel=1e-14)
-    assert table.speed == pytest.approx([2.0], rel=1e-14)
+    assert table.t == pytest.approx([1.625], rel=1e-14, abs=0)
+    assert table.speed == pytest.approx([2.0], rel=1e-14, abs=0)
     assert np.allclose(table.position, [[0.125, 0.0, 0.0]], rtol=0.0, atol=1e-14)
     m1, m2 = masses if any(masses) else (1.0, 1.0)
     mean, part = (m1 - m2) / (m1 + m2), 2.0 * restitution / (m1 + m2)
@@ -29,7 +33,7 @@ def test_head_on(method: str, restitution: float, masses: tuple[float, float]) -
     assert np.allclose(out.velocity[-1, :, 0], after, rtol=0.0, atol=1e-14)
     assert np.allclose(out.position[-1, :, 0], [-0.375, 0.375] + after * 0.375, rtol=0.0, atol=1e-13)
     reduced = m1 * m2 / (m1 + m2) if any(masses) else 0.0
-    assert table.energy_lost == pytest.approx([2.0 * reduced * (1.0 - restitution**2)], rel=1e-13)
+    assert table.energy_lost == pytest.approx([2.0 * reduced * (1.0 - restitution**2)], rel=1e-13, abs=0)
     # The row at the time of contact is of before.
     assert np.allclose(out.velocity[1:3, :, 0], [1.0, -1.0], rtol=0.0, atol=1e-14)
     assert out.status is vv.Status.OK
@@ -44,14 +48,14 @@ def test_oblique_impulses_are_along_the_line_of_centers(method: str) -> None:
     d, u = x[1] - x[0], v[1] - v[0]
     b, c = d @ u, d @ d - 0.64
     t = (-b - np.sqrt(b * b - (u @ u) * c)) / (u @ u)
-    assert out.collisions.t == pytest.approx([t], rel=1e-14)
+    assert out.collisions.t == pytest.approx([t], rel=1e-14, abs=0)
     normal = (d + t * u) / 0.8
     impulse = 1.75 * mass.prod() / mass.sum() * (normal @ u) * normal
     assert np.allclose(out.velocity[-1], v + np.array([impulse, -impulse]) / mass[:, None], rtol=0.0, atol=1e-14)
     assert np.allclose(out.momentum[1], out.momentum[0], rtol=0.0, atol=1e-14)
     assert np.allclose(out.angular_momentum[1], out.angular_momentum[0], rtol=0.0, atol=1e-14)
     lost = out.kinetic_energy[0] - out.kinetic_energy[1]
-    assert out.collisions.energy_lost[0] == pytest.approx(lost, rel=1e-13)
+    assert out.collisions.energy_lost[0] == pytest.approx(lost, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("speed", [1.0, 1e3, 1e6, 1e9])
@@ -65,7 +69,7 @@ def test_no_approach_is_too_short_for_a_step(speed: float, offset: float, option
     assert out.status is vv.Status.STOPPED
     # Near grazing the time of contact is known as the root of the rounding of the distance, an ulp of 6, is.
     chord = np.sqrt((0.2 - offset) * (0.2 + offset))
-    assert out.collisions.t[0] == pytest.approx(exact, rel=4 * EPSILON + 8 * EPSILON / chord)
+    assert out.collisions.t[0] == pytest.approx(exact, rel=4 * EPSILON + 8 * EPSILON / chord, abs=0)
     assert out.final.t0 == out.collisions.t[0]
 
 
@@ -164,13 +168,13 @@ def test_a_merger_keeps_what_it_must(method: str) -> None:
     out = free.run([0.0, 0.5, 1.0], collisions="merge", **how(method))
     after = out.final.particles
     assert len(out.collisions) > 0
-    assert after.mass.sum() == pytest.approx(p.mass.sum(), rel=1e-15)
-    assert (after.radius**3).sum() == pytest.approx((p.radius**3).sum(), rel=1e-14)
+    assert after.mass.sum() == pytest.approx(p.mass.sum(), rel=1e-15, abs=0)
+    assert (after.radius**3).sum() == pytest.approx((p.radius**3).sum(), rel=1e-14, abs=0)
     assert np.allclose(out.momentum, out.momentum[0], rtol=0.0, atol=1e-13)
     drift = out.center_of_mass[0] + np.multiply.outer(out.t, out.momentum[0] / p.mass.sum())
-    assert np.allclose(out.center_of_mass, drift, rtol=0.0, atol=1e-13)
+    assert np.allclose(out.center_of_mass, drift, rtol=0.0, atol=1e-14)
     lost = out.kinetic_energy[0] - out.kinetic_energy[-1]
-    assert out.collisions.energy_lost.sum() == pytest.approx(lost, rel=1e-12)
+    assert out.collisions.energy_lost.sum() == pytest.approx(lost, rel=1e-14, abs=0)
     for line in range(len(out.collisions)):
         first, second, left = (int(getattr(out.collisions, name)[line]) for name in ("first", "second", "survivor"))
         gone = first + second - left
@@ -186,7 +190,7 @@ def test_the_more_massive_survives_and_of_equals_the_first() -> None:
         out = head_on(*masses).run(2.0, collisions="merge")
         assert out.collisions.survivor.tolist() == [left]
         assert out.final.particles.mass[left] == sum(masses)
-        assert out.final.particles.radius[left] == pytest.approx((0.5**3 + 0.25**3) ** (1 / 3), rel=1e-15)
+        assert out.final.particles.radius[left] == pytest.approx((0.5**3 + 0.25**3) ** (1 / 3), rel=1e-15, abs=0)
 
 
 def test_a_merged_body_that_reaches_others_takes_them() -> None:
@@ -231,11 +235,11 @@ def test_planetesimals_become_one_and_columns_know_it() -> None:
         # Derived from the rounded states, and at the record from those with their compensation.
         assert np.allclose(getattr(out, column), getattr(recorded, column), rtol=1e-12, atol=1e-12), column
     assert np.allclose(out.momentum, out.momentum[0], rtol=0.0, atol=1e-12)
-    assert np.allclose(out.angular_momentum_about("center_of_mass").shape, (7, 3))
+    assert out.angular_momentum_about("center_of_mass").shape == (7, 3)
     table = out.conservation()
     assert table.momentum.max < 1e-13
     assert table.center_of_mass.max < 1e-12
-    assert out.final.particles.mass.sum() == pytest.approx(scene.particles.mass.sum(), rel=1e-14)
+    assert out.final.particles.mass.sum() == pytest.approx(scene.particles.mass.sum(), rel=1e-14, abs=0)
     gone = np.flatnonzero(out.final.particles.mass == 0.0)
     with pytest.raises(vv.InvalidInput, match="become a part of another"):
         out.elements(about=int(gone[0]))

@@ -1,4 +1,8 @@
-"""Elements of scenes and runs: about what, over time, of copies, and where an orbit degenerates."""
+"""Elements of scenes and runs: about what, over time, of copies, and where an orbit degenerates.
+
+Bounds: a state and its elements to some roundings of numbers of size 1; anomalies after ten periods, to the rounding
+of the phase.
+"""
 
 import numpy as np
 
@@ -26,8 +30,8 @@ def test_what_a_center_of_mass_is() -> None:
         place, rate = bodies[[0, 1, 3]].center_of_mass()
         found = scene.elements(2, about="center_of_mass")
         expected = vv.orbits.elements(2.0 * 2.05, bodies.position[2] - place, bodies.velocity[2] - rate)
-        assert np.isclose(found.semi_major_axis, expected.semi_major_axis, rtol=1e-13)
-        assert np.isclose(found.mean_anomaly, expected.mean_anomaly, rtol=1e-12)
+        assert np.isclose(found.semi_major_axis, expected.semi_major_axis, rtol=1e-13, atol=0)
+        assert np.isclose(found.mean_anomaly, expected.mean_anomaly, rtol=1e-12, atol=0)
 
 
 def test_two_bodies_have_one_conic() -> None:
@@ -38,8 +42,8 @@ def test_two_bodies_have_one_conic() -> None:
         for body, about in ((1, 0), (0, 1), (1, "jacobi"), (1, "center_of_mass"), (0, "center_of_mass"))
     ]
     for one in found:
-        assert np.isclose(one.eccentricity, 0.6, rtol=1e-15)
-        assert np.isclose(one.semi_major_axis, 1.0, rtol=1e-15)
+        assert np.isclose(one.eccentricity, 0.6, rtol=1e-15, atol=0)
+        assert np.isclose(one.semi_major_axis, 1.0, rtol=1e-15, atol=0)
         assert one.mu == found[0].mu
 
 
@@ -49,10 +53,10 @@ def test_elements_over_time_are_constant_for_two_bodies_and_of_an_ensemble() -> 
     out = scene.run(t=times)
     alone = out.elements(1, about=0)
     assert alone.eccentricity.shape == (7,)
-    assert np.allclose(alone.eccentricity, 0.5, rtol=1e-13)
+    assert np.allclose(alone.eccentricity, 0.5, rtol=1e-14, atol=0)
     assert np.allclose(alone.angular_momentum, alone.angular_momentum[0], rtol=0, atol=1e-14)
     turns = times / (2.0 * np.pi)
-    assert np.allclose(alone.mean_anomaly, 2.0 * np.pi * (turns - np.round(turns)), atol=1e-12)
+    assert np.allclose(alone.mean_anomaly, 2.0 * np.pi * (turns - np.round(turns)), rtol=0, atol=1e-12)
     copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 1.1])[:, None, None])
     many = copies.run(t=times)
     found = many.elements(about=0)
@@ -71,7 +75,8 @@ def test_copies_with_a_constant_of_their_own() -> None:
         alone = out[copy].elements(1, about=0)
         assert np.array_equal(found.eccentricity[copy], alone.eccentricity)
         assert np.array_equal(found.mu[copy], alone.mu)
-        assert np.allclose(alone.eccentricity, alone.eccentricity[0], rtol=1e-12)
+        # Of the copy with G = 1.5 it is 0, of the others of size 1/2: the rounding is that of 1.
+        assert np.allclose(alone.eccentricity, alone.eccentricity[0], rtol=0, atol=4e-15)
     assert len({float(e) for e in found.eccentricity[:, 0]}) == 3
 
 
@@ -110,5 +115,5 @@ def test_what_is_defined_where_an_orbit_degenerates() -> None:
 def test_two_gravities_are_one_of_their_sum() -> None:
     bodies = vv.Particles.from_elements(1.0, 0.5, G=3.0, semi_major_axis=2.0, eccentricity=0.1)
     found = vv.Scene(bodies, vv.Gravity(1.0), vv.Gravity(2.0)).elements(1)
-    assert np.isclose(found.semi_major_axis, 2.0, rtol=1e-14)
+    assert np.isclose(found.semi_major_axis, 2.0, rtol=1e-14, atol=0)
     assert found.mu == 4.5

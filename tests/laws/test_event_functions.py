@@ -1,4 +1,7 @@
-"""Functions of one's own among the events, of which nothing is known but their values."""
+"""Functions of one's own among the events, of which nothing is known but their values.
+
+Bounds: zeros of a harmonic motion to some roundings of their times.
+"""
 
 from __future__ import annotations
 

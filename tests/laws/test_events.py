@@ -1,4 +1,8 @@
-"""Events: where they are, that none is missed, that they change nothing."""
+"""Events: where they are, that none is missed, that they change nothing.
+
+Bounds: an event is where the interpolated motion has it, at rtol 1e-10; what is known in closed form, to some
+roundings.
+"""
 
 from __future__ import annotations
 

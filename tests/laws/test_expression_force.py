@@ -1,4 +1,7 @@
-"""Forces of one's own: what visviva has already, written as expressions, and what nobody else has."""
+"""Forces of one's own: what visviva has already, written as expressions, and what nobody else has.
+
+Bounds: forces are a few products of numbers of size 1, 1e-14; a run in another frame parts by twenty roundings.
+"""
 
 import pickle
 from typing import Any
@@ -114,7 +117,7 @@ def test_a_shifted_turned_and_rescaled_force_is_the_same() -> None:
     far = scene.shifted(position=[3.0, -2.0, 1.0]).rotated(turn).rescaled(length=2.0, mass=3.0, time=0.7)
     out = far.run(t=0.7, rtol=1e-13)
     back = ((out.position[-1] / 2.0) @ turn) - [3.0, -2.0, 1.0]
-    assert np.abs(back - wanted.position[-1]).max() < 1e-11
+    assert np.abs(back - wanted.position[-1]).max() < 4e-14
 
 
 def test_the_bits_are_the_same_alone_in_copies_and_with_threads() -> None:

@@ -1,4 +1,8 @@
-"""Forces together: they add, each with its own parameters, and the conservation table says what they keep."""
+"""Forces together: they add, each with its own parameters, and the conservation table says what they keep.
+
+Bounds: sums of a few accelerations in another order, 1e-15; a run there and back, of a magnetic field alone, 1e-14;
+runs at rtol = 1e-12 are ten times nearer than is allowed, in energy and to closed forms.
+"""
 
 import numpy as np
 import pytest
@@ -22,7 +26,7 @@ def test_two_gravities_add(n: int) -> None:
     # One rounding for the sum of the two.
     assert np.allclose(both.acceleration(), sum(scene.acceleration() for scene in apart), rtol=4e-16, atol=0)
     total = both.invariants().potential_energy
-    assert total == pytest.approx(sum(scene.invariants().potential_energy for scene in apart), rel=4e-16)
+    assert total == pytest.approx(sum(scene.invariants().potential_energy for scene in apart), rel=4e-16, abs=0)
 
 
 def test_two_gravities_are_one_of_the_summed_constant() -> None:
@@ -56,7 +60,7 @@ def test_two_uniform_and_two_central_fields_add() -> None:
     apart = [vv.Scene(bodies, force) for force in forces]
     assert np.allclose(both.acceleration(), sum(scene.acceleration() for scene in apart), rtol=1e-15, atol=1e-15)
     energies = [scene.invariants().potential_energy for scene in apart]
-    assert both.invariants().potential_energy == pytest.approx(sum(energies), rel=1e-15)
+    assert both.invariants().potential_energy == pytest.approx(sum(energies), rel=1e-15, abs=0)
 
 
 def test_a_force_that_does_nothing_keeps_everything() -> None:
@@ -250,7 +254,7 @@ def test_a_charge_retraces_its_path_and_drag_does_not() -> None:
     scene = vv.Scene(ONE, vv.UniformMagneticField([0.3, 0.0, 1.0]))
     there = scene.run(t=3.0, rtol=1e-12).final.reversed()
     back = there.run(t=there.t0 + 3.0, rtol=1e-12).final
-    assert np.allclose(back.particles.position, ONE.position, rtol=0, atol=1e-10)
+    assert np.allclose(back.particles.position, ONE.position, rtol=0, atol=1e-14)
     drags = vv.LinearDrag(1.0), vv.QuadraticDrag(1.0), vv.Drag(1.0, 1.0, 1.0)
     irreversible = *drags, vv.Damper(0, 1, 1.0), vv.DrivenForce([1.0, 0, 0], 1.0)
     for force in irreversible:
@@ -298,7 +302,7 @@ def test_a_rotating_frame_keeps_jacobis_integral() -> None:
     np.testing.assert_allclose(out.energy, jacobi, rtol=0, atol=4e-15)
     table = out.conservation()
     assert [row.conserved for row in table.rows] == [True, False, False, False]
-    assert table.energy.max < 1e-10
+    assert table.energy.max < 5e-13
     fourth = vv.Particles([1.0], [[0.5 - mu, np.sqrt(3) / 2, 0.0]])
     # The rounding of the place, 1e-16, grows as e^{0.6 t} at this mass ratio.
     there = vv.Scene(fourth, *scene.forces).run(t=5.0, rtol=1e-12).position[-1]
@@ -317,7 +321,7 @@ def test_electric_fields_pull_each_charge_by_its_own() -> None:
     both = vv.Scene(bodies, *scene.forces, vv.LinearDrag(0.5)).run(t=2.0)
     assert both.plan.solution == "closed form: exponential decay"
     stepped = vv.Scene(bodies, *scene.forces, vv.LinearDrag(0.5)).run(t=2.0, method="dop853", rtol=1e-12)
-    np.testing.assert_allclose(both.position, stepped.position, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(both.position, stepped.position, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("how", [{}, {"method": "leapfrog", "dt": 0.005}], ids=repr)
@@ -336,7 +340,7 @@ def test_energies_of_charges_that_a_massless_body_precedes(force: vv.forces.Forc
     for row in range(3):
         now = vv.Scene(vv.Particles(bodies.mass, out.position[row], out.velocity[row]), *scene.forces)
         # The rounding of the recorded state.
-        assert out.energy[row] == pytest.approx(now.invariants().energy, rel=1e-14)
+        assert out.energy[row] == pytest.approx(now.invariants().energy, rel=1e-14, abs=0)
     end = scene.run(t=1.0, events=[vv.events.energy(scene.invariants().energy + 1.0)], **how)  # type: ignore[arg-type]
     assert len(end.events) == 0
 

@@ -1,4 +1,7 @@
-"""Springs and dampers between listed bodies."""
+"""Springs and dampers between listed bodies.
+
+Bounds: at rtol = 1e-12 distances end 1e-13 off and energies 3e-13; more than ten times that is not allowed.
+"""
 
 import numpy as np
 import pytest
@@ -25,9 +28,9 @@ def test_springs_swing(copies: int) -> None:
         position = scene.ensemble(mass=np.tile(mass, (copies, 1))).run(t=t, rtol=1e-12).position[-1]
         assert np.array_equal(position, alone)
     omega = np.sqrt(k * (1 + 1 / 3))
-    assert np.allclose(position[:, 1, 0] - position[:, 0, 0], length + 0.5 * np.cos(omega * t), rtol=0, atol=1e-10)
+    assert np.allclose(position[:, 1, 0] - position[:, 0, 0], length + 0.5 * np.cos(omega * t), rtol=0, atol=2e-12)
     free = np.outer(t, [0, 1.0, 0]) + np.array([9.0, 0, 0])
-    assert np.allclose(position[:, 2], free, rtol=0, atol=1e-12)
+    assert np.allclose(position[:, 2], free, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("n", [3, 8, 20])
@@ -81,7 +84,7 @@ def test_a_damped_spring_swings_as_the_damped_oscillator() -> None:
     one = vv.Scene(vv.Particles([mu], [[0.5, 0, 0]], [[0.4, 0, 0]]), vv.Harmonic(k), vv.LinearDrag(mu / c)).run(t=t)
     assert one.plan.closed_form
     s = out.position[:, 1, 0] - out.position[:, 0, 0] - length
-    np.testing.assert_allclose(s, one.position[:, 0, 0], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(s, one.position[:, 0, 0], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("n", [2, 3, 8, 9, 20])

@@ -1,4 +1,7 @@
-"""Series of what flattening and relativity add to the pulls of bodies, in every arrangement of lanes."""
+"""Series of what flattening and relativity add to the pulls of bodies, in every arrangement of lanes.
+
+Bounds: momenta are kept to the rounding of theirs, 1e-4, and energies to that of theirs in a step.
+"""
 
 from __future__ import annotations
 
@@ -64,8 +67,8 @@ def test_a_member_has_the_bits_that_it_has_alone(count: int, force: vv.Force, pl
 def test_momentum_is_kept_and_so_is_the_energy_of_flattening() -> None:
     scene = vv.Scene(planets(5), vv.Gravity(G=1.0), SEVERAL)
     out = scene.run(t=[0.0, 50.0], method="taylor", rtol=1e-13, record=("momentum", "energy"))
-    np.testing.assert_allclose(out.momentum[-1], out.momentum[0], rtol=0.0, atol=1e-16)
-    np.testing.assert_allclose(out.energy[-1], out.energy[0], rtol=1e-12)
+    np.testing.assert_allclose(out.momentum[-1], out.momentum[0], rtol=0.0, atol=4e-18)
+    np.testing.assert_allclose(out.energy[-1], out.energy[0], rtol=1e-14)
 
 
 def test_the_advance_of_a_pericenter() -> None:
@@ -80,4 +83,4 @@ def test_the_advance_of_a_pericenter() -> None:
     turned = np.unwrap(np.arctan2(near[:, 1], near[:, 0]))
     each = np.diff(turned).mean()
     expected = 6.0 * np.pi / (c**2 * a * (1.0 - e**2))
-    assert each == pytest.approx(expected, rel=30.0 / c**2)
+    assert each == pytest.approx(expected, rel=30.0 / c**2, abs=0)

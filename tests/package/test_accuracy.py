@@ -1,4 +1,8 @@
-"""A run that resolved nothing does not end without a word, and a run that is fine is not spoken to."""
+"""A run that resolved nothing does not end without a word, and a run that is fine is not spoken to.
+
+Bounds: velocities that drag took are given back with the rounding of what was left of them, 1e-12 of it at rtol,
+which backward in time grows as they do, a million times and more.
+"""
 
 import warnings
 from typing import Any
@@ -92,7 +96,7 @@ def test_energy_that_comes_back_is_not_blamed(forces: tuple[vv.forces.Force, ...
     scene = vv.Scene(BALLS, *forces)
     out = scene.run(t=1.0, rtol=1e-12)
     back = vv.Scene(out.final.particles, *forces, t0=1.0)
-    np.testing.assert_allclose(back.run(t=0.0, rtol=1e-12).velocity[-1], BALLS.velocity, atol=1e-4)
+    np.testing.assert_allclose(back.run(t=0.0, rtol=1e-12).velocity[-1], BALLS.velocity, rtol=0, atol=1e-4)
 
 
 FROM_REST = {

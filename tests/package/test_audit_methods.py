@@ -1,4 +1,8 @@
-"""What methods declare, seen by `vv.audit` on a scene, and what it refuses."""
+"""What methods declare, seen by `vv.audit` on a scene, and what it refuses.
+
+Bounds: quadratures and sums to some ten roundings, and times those of a motion there and back: e = 0.9 amplifies a
+phase a hundred times; a collinear motion is unstable, to 3e-14 at its end.
+"""
 
 import numpy as np
 import pytest
@@ -68,7 +72,7 @@ def test_the_impulse_is_the_momentum_that_a_drive_gives() -> None:
     np.testing.assert_allclose(given, gained, rtol=0, atol=1e-13)
     pulse = vv.audit.impulse(lambda t: np.exp(-(t**2))[:, None] * [1.0, 0.0, -2.0], (-8.0, 8.0))
     np.testing.assert_allclose(pulse, np.sqrt(np.pi) * np.array([1.0, 0.0, -2.0]), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(vv.audit.impulse(lambda t: np.ones((len(t), 3)), (2.0, -1.0)), -3.0, rtol=1e-13)
+    np.testing.assert_allclose(vv.audit.impulse(lambda t: np.ones((len(t), 3)), (2.0, -1.0)), -3.0, rtol=1e-14)
     for jump in (0.123, 0.5003, 0.25, 0.9):
         with pytest.raises(vv.ConvergenceError):
             vv.audit.impulse(lambda t, jump=jump: np.sign(t - jump)[:, None] * np.ones(3), (0.0, 1.0))
@@ -92,9 +96,9 @@ def test_masses_are_told_by_their_accelerations(force: vv.forces.Force) -> None:
     states = zip(out.position, out.velocity, strict=True)
     a = np.array([vv.Scene(vv.Particles(pair.mass, *state), force).acceleration() for state in states])
     for one in a:
-        assert vv.audit.mass_ratio(*one) == pytest.approx(3.5, rel=1e-14)
-    assert vv.audit.mass_ratio(a[:, 0], a[:, 1]) == pytest.approx(3.5, rel=1e-14)
-    assert vv.audit.mass_ratio(1e200 * a[:, 0], 1e200 * a[:, 1]) == pytest.approx(3.5, rel=1e-14)
+        assert vv.audit.mass_ratio(*one) == pytest.approx(3.5, rel=1e-14, abs=0)
+    assert vv.audit.mass_ratio(a[:, 0], a[:, 1]) == pytest.approx(3.5, rel=1e-14, abs=0)
+    assert vv.audit.mass_ratio(1e200 * a[:, 0], 1e200 * a[:, 1]) == pytest.approx(3.5, rel=1e-14, abs=0)
 
 
 def test_accelerations_that_are_no_action_and_reaction_are_refused() -> None:
@@ -112,10 +116,10 @@ def test_a_line_that_turns_is_rigid_and_a_spring_is_not() -> None:
     changes = vv.audit.rigidity(out)
     assert changes.shape == (5, 3)
     assert not changes[0].any()
-    assert np.abs(changes).max() < 1e-11
+    assert np.abs(changes).max() < 4e-13
     spring = vv.Scene(BODIES[:2], vv.Spring(0, 1, k=4.0, length=0.5)).run(t=np.linspace(0.0, 1.0, 5))
     apart = np.linalg.norm(spring.position[:, 0] - spring.position[:, 1], axis=1)
-    np.testing.assert_allclose(vv.audit.rigidity(spring, [(1, 0)])[:, 0], apart / apart[0] - 1.0, atol=1e-15)
+    np.testing.assert_allclose(vv.audit.rigidity(spring, [(1, 0)])[:, 0], apart / apart[0] - 1.0, rtol=0, atol=1e-15)
     for pairs in ([(0, 0)], [(0, 2)], [(-1, 0)]):
         with pytest.raises(vv.InvalidInput, match="two of the bodies 0 to 1"):
             vv.audit.rigidity(spring, pairs)

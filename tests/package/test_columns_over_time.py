@@ -80,6 +80,11 @@ def test_what_is_no_such_picture_is_refused(how: dict[str, Any], argument: str) 
         THREE.plot(**how)
 
 
+def test_a_column_of_one_number_says_that_it_has_no_components() -> None:
+    with pytest.raises(vv.InvalidInput, match="energy is one number and has no components, got 'x'"):
+        THREE.plot("kinetic_energy", component="x")
+
+
 @pytest.mark.parametrize("direction", range(3))
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
 def test_a_motion_along_a_line_is_drawn_against_time(direction: int, size: float) -> None:

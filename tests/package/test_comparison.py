@@ -1,4 +1,7 @@
-"""Work against precision: every point is a run that says what it says, and the best is the best."""
+"""Work against precision: every point is a run that says what it says, and the best is the best.
+
+Bounds: a closed form, to some roundings of numbers of size 1.
+"""
 
 from time import perf_counter
 

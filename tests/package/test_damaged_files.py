@@ -1,6 +1,5 @@
 """Damaged files are refused when they are loaded, whatever is wrong with them, and nothing fails later."""
 
-import json
 import os
 import threading
 import zipfile
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from kept_files import parts, refused, written
 
 import visviva as vv
 from visviva import _core
@@ -55,30 +55,11 @@ def use(out: vv.Trajectory | vv.EnsembleTrajectory) -> None:
 
 def refused_or_whole(path: Path) -> bool:
     """Whether the file is refused, as it should be; if it loads, then nothing fails later."""
-    try:
-        out = vv.load(path)
-    except vv.InvalidInput as error:
-        if error.argument != "path":
-            raise
-        return True
-    use(out)
-    return False
-
-
-def parts(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    with np.load(path) as file:
-        arrays = dict(file)
-    return json.loads(arrays.pop("header").tobytes()), arrays
-
-
-def write(path: Path, header: object, arrays: dict[str, np.ndarray]) -> Path:
-    text = header if isinstance(header, bytes) else json.dumps(header).encode()
-    np.savez(path, header=np.frombuffer(text, np.uint8), **arrays)
-    return path
+    return refused(path, use)
 
 
 def test_what_is_written_again_loads(good: Path) -> None:
-    assert not refused_or_whole(write(good, *parts(good)))
+    assert not refused_or_whole(written(good, *parts(good)))
 
 
 def test_the_file_of_version_1_is_whole_and_has_its_plan() -> None:
@@ -118,7 +99,7 @@ def test_a_flipped_byte_is_refused_or_harmless(good: Path, compressed: bool) -> 
 def test_every_missing_array_is_refused(good: Path) -> None:
     header, arrays = parts(good)
     for name in arrays:
-        write(good, header, {other: array for other, array in arrays.items() if other != name})
+        written(good, header, {other: array for other, array in arrays.items() if other != name})
         if name.startswith("columns/"):  # not every column need be recorded
             assert name.removeprefix("columns/") not in vv.load(good).recorded
         else:
@@ -142,7 +123,7 @@ def test_every_missing_array_is_refused(good: Path) -> None:
 def test_every_array_of_another_shape_or_type_is_refused(good: Path, damage: Callable[[Any], Any]) -> None:
     header, arrays = parts(good)
     for name, array in arrays.items():
-        assert refused_or_whole(write(good, header, arrays | {name: damage(array)})), name
+        assert refused_or_whole(written(good, header, arrays | {name: damage(array)})), name
 
 
 @pytest.mark.parametrize(
@@ -163,7 +144,7 @@ def test_every_array_of_another_shape_or_type_is_refused(good: Path, damage: Cal
 )
 def test_arrays_that_cannot_be_are_refused(good: Path, more: dict[str, np.ndarray]) -> None:
     header, arrays = parts(good)
-    assert refused_or_whole(write(good, header, arrays | more))
+    assert refused_or_whole(written(good, header, arrays | more))
 
 
 def test_every_missing_key_is_refused(good: Path) -> None:
@@ -177,7 +158,7 @@ def test_every_missing_key_is_refused(good: Path) -> None:
             if key == "written_by" or (where[:1] == ("forces",) and key in DEFAULTS):
                 continue
             kept = inner.pop(key)
-            assert refused_or_whole(write(good, header, arrays)), (where, key)
+            assert refused_or_whole(written(good, header, arrays)), (where, key)
             inner[key] = kept
 
 
@@ -193,7 +174,7 @@ def test_every_value_of_another_kind_is_refused(good: Path) -> None:
         for key, kept in list(inner.items()):
             for wrong in WRONG:
                 inner[key] = wrong
-                if not refused_or_whole(write(good, header, arrays)):
+                if not refused_or_whole(written(good, header, arrays)):
                     # What loads is a number for a number, a text for a text, none of a list.
                     like = (int, float) if isinstance(kept, int | float) and kept is not True else type(kept)
                     assert key == "written_by" or isinstance(wrong, like), (where, key, wrong)
@@ -221,7 +202,7 @@ def test_every_value_of_another_kind_is_refused(good: Path) -> None:
 )
 def test_headers_that_are_none_are_refused(good: Path, text: bytes) -> None:
     _, arrays = parts(good)
-    assert refused_or_whole(write(good, text, arrays))
+    assert refused_or_whole(written(good, text, arrays))
 
 
 def test_a_shape_larger_than_the_file_asks_for_no_memory(good: Path) -> None:

@@ -48,7 +48,7 @@ def test_energies_are_changes_and_rounding_is_called_so() -> None:
     assert (drawn[:, 0] == 0.0).all()
     energy = _coarse().energy
     assert (energy[:, 0] < 0.0).all()  # so that a rise is drawn as one
-    np.testing.assert_allclose(drawn[:, -1], 1.0 - energy[:, -1] / energy[:, 0], atol=1e-15)
+    np.testing.assert_allclose(drawn[:, -1], 1.0 - energy[:, -1] / energy[:, 0], rtol=0, atol=1e-15)
     # Of an energy of 0 no relative change is told.
     rest = vv.Scene(vv.Particles([1.0], [[0, 0, 0]]), vv.Harmonic(1.0)).ensemble(position=np.array([[[0, 0, 0]]]))
     assert rest.run(t=[0.0, 1.0]).plot("energy").axes[0].get_ylabel() == "E − E₀"

@@ -1,4 +1,7 @@
-"""What a method tells of itself, against what follows from it."""
+"""What a method tells of itself, against what follows from it.
+
+Bounds: a step by the coefficients, in another order of its some ten sums.
+"""
 
 import pickle
 

@@ -1,4 +1,7 @@
-"""Ensembles over the parameters of forces: each copy is the scene that has them alone."""
+"""Ensembles over the parameters of forces: each copy is the scene that has them alone.
+
+Bounds: a product, 1e-15, and a circle by its closed form, 1e-14.
+"""
 
 import dataclasses
 import inspect

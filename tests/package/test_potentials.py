@@ -1,4 +1,7 @@
-"""The potentials of the registry: F = −dV/dr, and the stub says what is there."""
+"""The potentials of the registry: F = −dV/dr, and the stub says what is there.
+
+Bounds: closed forms of two or three operations, one rounding each.
+"""
 
 import pickle
 import subprocess
@@ -73,13 +76,13 @@ def test_frozen_hashable_picklable_documented(potential: potentials.Potential) -
 def test_closed_forms() -> None:
     r = np.array([0.5, 1.0, 4.0])
     assert np.array_equal(potentials.Coulomb(2.0).value(r), 2.0 / r)
-    assert potentials.Yukawa(2.0, 0.5).value(r) == pytest.approx(2.0 * np.exp(-r / 0.5) / r, rel=4e-16)
+    assert potentials.Yukawa(2.0, 0.5).value(r) == pytest.approx(2.0 * np.exp(-r / 0.5) / r, rel=4e-16, abs=0)
     well = potentials.LennardJones(epsilon=3.0, sigma=1.5)
     bottom = 2.0 ** (1 / 6) * 1.5
     # At the minimum V = −ε, to the rounding of (σ/r)⁶ = 1/2; the force vanishes against 24 ε/σ.
-    assert float(well.value(bottom)) == pytest.approx(-3.0, rel=4e-15)
+    assert float(well.value(bottom)) == pytest.approx(-3.0, rel=4e-15, abs=0)
     assert abs(float(well.force(bottom))) < 48 * 4e-15
-    assert float(well.curvature(bottom)) == pytest.approx(72 * 3.0 / bottom**2, rel=1e-14)
+    assert float(well.curvature(bottom)) == pytest.approx(72 * 3.0 / bottom**2, rel=1e-14, abs=0)
 
 
 def test_the_stubs_are_what_the_registry_says() -> None:

@@ -1,11 +1,11 @@
 """Saved runs: everything comes back, whole files only, every earlier version loads."""
 
-import json
 import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
+from kept_files import parts, the_old_file_stays, written
 
 import visviva as vv
 from visviva import io
@@ -58,28 +58,13 @@ def test_the_path_is_used_as_given(tmp_path: Path) -> None:
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "run.npz"
-    scene().run(t=2.0).save(path)
-    before = path.read_bytes()
-
-    def full_disk(file: object, **_: object) -> None:
-        file.write(b"half")  # type: ignore[attr-defined]
-        raise OSError("no space left")
-
-    monkeypatch.setattr(io.np, "savez", full_disk)
-    with pytest.raises(OSError, match="no space left"):
-        scene().run(t=3.0).save(path)
-    assert path.read_bytes() == before
-    assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
+    the_old_file_stays(tmp_path / "run.npz", scene().run(t=2.0), scene().run(t=3.0), monkeypatch)
 
 
 def rewrite(path: Path, **changes: object) -> Path:
     """The same file with another header."""
-    with np.load(path) as file:
-        arrays = dict(file)
-    header = json.loads(arrays.pop("header").tobytes()) | changes
-    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
-    return path
+    header, arrays = parts(path)
+    return written(path, header | changes, arrays)
 
 
 def test_other_files_are_refused_by_name(tmp_path: Path) -> None:
@@ -155,12 +140,9 @@ def test_events_come_back_with_what_was_looked_for(tmp_path: Path, members: int)
 def test_a_file_without_definitions_loads(tmp_path: Path) -> None:
     """As files were written before definitions were kept."""
     scene().run(t=4.0, events=[vv.events.apsis(1, 0)]).save(tmp_path / "run.npz")
-    with np.load(tmp_path / "run.npz") as file:
-        arrays = dict(file)
-    header = json.loads(arrays.pop("header").tobytes())
+    header, arrays = parts(tmp_path / "run.npz")
     del header["events"]
-    np.savez(tmp_path / "old.npz", header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
-    old = vv.load(tmp_path / "old.npz")
+    old = vv.load(written(tmp_path / "old.npz", header, arrays))
     assert len(old.events) > 0
     assert old.events.definitions == ()
 

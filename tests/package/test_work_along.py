@@ -1,4 +1,7 @@
-"""The work of a force along a run: every registered force, of all times together and of each by itself."""
+"""The work of a force along a run: every registered force, of all times together and of each by itself.
+
+Bounds: sums of thirteen terms in another order, 1e-14 of the largest.
+"""
 
 from typing import Any
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import copy
-import json
 import pickle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from kept_files import parts, written
 
 import visviva as vv
 
@@ -262,12 +262,9 @@ def test_events_of_bodies_that_are_integrated_apart_are_those_of_the_whole(name:
 
 def altered(path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Any:
     """The run in the file after the change to header and arrays."""
-    with np.load(path) as file:
-        arrays = dict(file)
-    header = json.loads(arrays.pop("header").tobytes())
+    header, arrays = parts(path)
     change(header, arrays)
-    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8), **arrays)
-    return vv.load(path)
+    return vv.load(written(path, header, arrays))
 
 
 def test_what_does_not_belong_to_the_scene_is_not_used(tmp_path: Path) -> None:

@@ -55,6 +55,29 @@ def test_the_copy_is_named(own: str, tmp_path: Path) -> None:
         copies.run_to_parquet(**how, to=tmp_path / "copies.parquet", copies_at_once=1)
 
 
+@pytest.mark.parametrize("own", ["mass", "parameters"])
+def test_a_short_run_of_copies_with_masses_or_forces_of_their_own_is_not_looked_at(own: str) -> None:
+    """To look at each by itself would take longer than the run."""
+    start = {"velocity": [PASSAGE.particles.velocity] * 2}
+    masses, constants = {"mass": [[0.1, 10.0], [0.2, 10.0]]}, {"parameters": {"Gravity": {"G": [1.0, 1.01]}}}
+    given = {"mass": masses, "parameters": constants}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = PASSAGE.ensemble(**start, **given[own]).run(t=10.0, dt=0.1)
+    assert np.abs(out.energy[:, -1] / out.energy[:, 0] - 1.0).max() > 1.0
+
+
+@pytest.mark.parametrize(("bodies", "t", "looked_at"), [(14, 10.0, True), (15, 10.0, False), (15, 30.0, True)])
+def test_of_more_than_a_hundred_pairs_a_short_run_is_not_looked_at(bodies: int, t: float, looked_at: bool) -> None:
+    """A sum over 105 pairs is something beside 1700 evaluations of the forces, over 91, or beside 5100, it is not."""
+    apart = 1e3 * np.arange(bodies - 1)[:, None] * [1.0, 0.0, 0.0]
+    rest = vv.RigidBodies(np.full(bodies - 1, 10.0), moments=[[2.0, 3.0, 4.0]] * (bodies - 1), position=apart)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        vv.Scene(PASSAGE.particles[[0]], rest, vv.Gravity(1.0)).run(t=[t], dt=0.1)
+    assert [each.category for each in caught] == [vv.AccuracyWarning] * looked_at
+
+
 def test_what_resolves_it_is_not_blamed() -> None:
     drag = vv.RotationalDrag(0.5)
     body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
@@ -76,6 +99,42 @@ def test_a_motion_that_comes_back_to_rest_is_not_blamed(method: vv.typing.Method
         warnings.simplefilter("error")
         out = scene.run(t=np.pi, method=method, dt=0.01)
     assert np.abs(out.velocity[-1]).max() < 1e-2
+
+
+def test_copies_that_come_back_to_rest_are_not_blamed_beside_one_that_moves() -> None:
+    spring = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=4.0, length=0.0, anchor=[0.0, 0.0, 0.0])
+    scene = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5]), spring, vv.UniformField([0.0, 0.0, -9.8]))
+    velocity = np.zeros((3, 1, 3))
+    velocity[2, 0, 0] = 1.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene.ensemble(velocity=velocity).run(t=np.pi, method="leapfrog", dt=0.01)
+
+
+@pytest.mark.parametrize("size", [1.0, 1e10])
+def test_a_motion_from_rest_that_was_not_resolved_is_said(size: float) -> None:
+    spring = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=4.0 * size, length=0.0, anchor=[0.0, 0.0, 0.0])
+    body = vv.RigidBody(size, [1.0 * size, 2.0 * size, 2.5 * size])
+    with pytest.warns(vv.AccuracyWarning, match=r"off by 0\.025"):
+        vv.Scene(body, spring, vv.UniformField([0.0, 0.0, -9.8])).run(t=[6.5], method="leapfrog", dt=0.9)
+
+
+def test_an_error_of_a_hundredth_is_said() -> None:
+    """It is of kinetic + |potential|, however fast the body was from the start."""
+    scene = vv.Scene(vv.RigidBody(1.0, moments=[0.1, 0.2, 0.25], velocity=[0.0, 0.0, 40.0]), *ON_A_SPRING.body_forces)
+    with pytest.warns(vv.AccuracyWarning, match=r"off by 0\.014"):
+        scene.run(t=[2.0], method="rk4", dt=0.008)
+
+
+def test_copies_with_forces_of_their_own_are_looked_at_by_these() -> None:
+    """By those of another copy their energies would not stay."""
+    velocity = np.array([[[0.0, 4.0, 0.0], [0.0, 0.0, 0.0]], [[0.0, 8.0, 0.0], [0.0, 0.0, 0.0]]])
+    pair = vv.Particles([0.1], [[1.0, 0.0, 0.0]]), vv.RigidBody(10.0, [0.2, 0.3, 0.4])
+    copies = vv.Scene(*pair, vv.Gravity(1.0)).ensemble(velocity=velocity, parameters={"Gravity": {"G": [1.0, 4.0]}})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = copies.run(t=5.0, dt=0.005)
+    assert out.stats.evaluations > 2 * 10_000  # of both
 
 
 def test_bodies_that_end_in_one_place_are_no_error() -> None:

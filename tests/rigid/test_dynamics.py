@@ -2,6 +2,9 @@
 
 Numbers of the top: Brüls, Cardona & Arnold, Mech. Mach. Theory 48 (2012) 121, to 34 digits; of the free body:
 Hairer & Vilmart, J. Phys. A 39 (2006) 13225, likewise.
+
+Bounds: closed forms and what symmetries keep, to ten times what the roundings of a run come to in its time, 1e-15 to
+3e-14 (of steps: a few of theirs); those of angular velocities of a fast top are amplified by its precession.
 """
 
 from __future__ import annotations
@@ -83,9 +86,9 @@ def test_any_step_of_a_free_body_is_exact(dt: float) -> None:
 
 def test_the_top_of_bruels_and_cardona() -> None:
     out = top().run(t=2.0, method="kahan_li8", dt=0.02)
-    assert np.abs(out.position[-1, 0] - TOP_CENTER).max() <= 1e-12
+    assert np.abs(out.position[-1, 0] - TOP_CENTER).max() <= 1e-13
     assert np.abs(out.angular_velocity[-1, 0] - TOP_SPIN).max() <= 1e-11
-    np.testing.assert_allclose(out.velocity[-1, 0], np.cross(_space_spin(out), out.position[-1, 0]), atol=1e-13)
+    np.testing.assert_allclose(out.velocity[-1, 0], np.cross(_space_spin(out), out.position[-1, 0]), rtol=0, atol=1e-13)
 
 
 def _space_spin(out: vv.Trajectory) -> np.ndarray:
@@ -204,7 +207,7 @@ def test_the_frame_does_not_matter(name: str) -> None:
     turn = vv.rigid.matrix([0.1, -0.5, 0.3, 0.8] / np.linalg.norm([0.1, -0.5, 0.3, 0.8]))
     how = {"t": 0.5, "method": "kahan_li8", "dt": 0.01}
     here, there = scene.run(**how), scene.rotated(turn).run(**how)
-    np.testing.assert_allclose(there.position[-1], here.position[-1] @ turn.T, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(there.position[-1], here.position[-1] @ turn.T, rtol=0, atol=1e-14)
     np.testing.assert_allclose(there.angular_velocity, here.angular_velocity, rtol=0, atol=1e-11)
     moved = scene.shifted(position=[1.0, -2.0, 0.5]).run(**how)
     np.testing.assert_allclose(moved.orientation, here.orientation, rtol=0, atol=1e-13)
@@ -241,7 +244,7 @@ def test_axes_of_a_tensor_do_not_matter() -> None:
         ]
     )
     np.testing.assert_allclose(other.position, one.position, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(other.angular_velocity[-1, 0], axes @ one.angular_velocity[-1, 0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(other.angular_velocity[-1, 0], axes @ one.angular_velocity[-1, 0], rtol=0, atol=4e-14)
     np.testing.assert_allclose(other.energy, one.energy, rtol=1e-14)
 
 
@@ -376,4 +379,4 @@ def test_spheres_do_not_turn_each_other() -> None:
     assert (out.position == points.position).all()
     np.testing.assert_array_equal(out.angular_velocity[-1], [[0, 1.0, 2.0]] * 2)
     spin = 0.2 * 5.0 / 2 * 1.0
-    np.testing.assert_allclose(out.kinetic_energy - points.kinetic_energy, spin, rtol=1e-13)
+    np.testing.assert_allclose(out.kinetic_energy - points.kinetic_energy, spin, rtol=1e-14)

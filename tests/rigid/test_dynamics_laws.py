@@ -1,4 +1,8 @@
-"""Laws of rigid bodies in scenes that nobody chose: conservation, frames, units, members, whatever is combined."""
+"""Laws of rigid bodies in scenes that nobody chose: conservation, frames, units, members, whatever is combined.
+
+Bounds: roundings of the numbers, of size up to 11, of runs that symmetries carry into each other; twenty times what
+was seen.
+"""
 
 from __future__ import annotations
 
@@ -112,12 +116,12 @@ def test_frames_do_not_matter(seed: int) -> None:
         return
     turn = vv.rigid.matrix(unit(rng))
     out, turned = made.run(t=0.3, **HOW), made.rotated(turn).run(t=0.3, **HOW)
-    np.testing.assert_allclose(turned.position[-1], out.position[-1] @ turn.T, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(turned.angular_velocity[-1], out.angular_velocity[-1], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(turned.position[-1], out.position[-1] @ turn.T, rtol=0, atol=5e-14)
+    np.testing.assert_allclose(turned.angular_velocity[-1], out.angular_velocity[-1], rtol=0, atol=2e-13)
     moved = made.shifted(position=rng.normal(size=3)).run(t=0.3, **HOW)
-    np.testing.assert_allclose(moved.orientation[-1], out.orientation[-1], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(moved.orientation[-1], out.orientation[-1], rtol=0, atol=1e-14)
     back = out.final.reversed().run(t=0.6, **HOW)
-    np.testing.assert_allclose(back.position[-1], made.particles.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(back.position[-1], made.particles.position, rtol=0, atol=5e-14)
 
 
 @settings(max_examples=EXAMPLES, deadline=None)

@@ -1,4 +1,7 @@
-"""Heavy tops at any time: Taylor series in 40 digits, invariants, limits, poles, and what is refused."""
+"""Heavy tops at any time: Taylor series in 40 digits, invariants, limits, poles, and what is refused.
+
+Bounds: EPSILON times the angle that was turned, which is given to so much.
+"""
 
 import pickle
 
@@ -79,7 +82,7 @@ def test_the_top_of_bruels_and_cardona():
     nutation = BRUELS.nutation(np.pi / 2, phi_dot=-4.61538, psi_dot=150.0)
     late = BRUELS.solve([200.0, -200.0, 268 * nutation.period], theta=np.pi / 2, phi_dot=-4.61538, psi_dot=150.0)
     assert late.theta[0] == pytest.approx(late.theta[1], abs=1e-13)
-    assert late.psi[0] == pytest.approx(-late.psi[1], rel=1e-15)
+    assert late.psi[0] == pytest.approx(-late.psi[1], rel=1e-15, abs=0)
     # The period is rounded to 6e-17 of itself, and the angle is stationary there.
     assert late.theta[2] == pytest.approx(np.pi / 2, abs=1e-13)
 

@@ -1,4 +1,8 @@
-"""Pictures of rigid motions, by what is drawn: the curves must lie where Poinsot and the theory of tops have them."""
+"""Pictures of rigid motions, by what is drawn: the curves must lie where Poinsot and the theory of tops have them.
+
+Bounds: what is drawn is computed from the states by some ten operations, whose energies and momenta a run keeps to
+1e-14.
+"""
 
 import sys
 
@@ -23,9 +27,9 @@ def drawn(line):
 def test_the_polhode_lies_on_both_ellipsoids():
     path = drawn(OUT.plot("polhode").axes[0].lines[0])
     assert len(path) == len(T)
-    assert (MOMENTS * path**2).sum(axis=-1) == pytest.approx(1.0, rel=1e-14)
+    assert (MOMENTS * path**2).sum(axis=-1) == pytest.approx(1.0, rel=1e-14, abs=0)
     momentum = ((MOMENTS * path) ** 2).sum(axis=-1)
-    assert momentum == pytest.approx(OUT.casimir[0] / (2 * OUT.energy[0]), rel=1e-13)
+    assert momentum == pytest.approx(OUT.casimir[0] / (2 * OUT.energy[0]), rel=1e-14, abs=0)
     assert np.ptp(path, axis=0).min() > 0.1
 
 
@@ -46,7 +50,7 @@ def test_traces_are_unit_vectors_and_the_angular_momentum_is_theirs():
     *axes, along = [drawn(line) for line in OUT.plot("axes").axes[0].lines]
     assert len(axes) == 3
     for path in axes:
-        assert (path**2).sum(axis=-1) == pytest.approx(1.0, rel=1e-14)
+        assert (path**2).sum(axis=-1) == pytest.approx(1.0, rel=1e-14, abs=0)
     direction = along[1] / np.linalg.norm(along[1])
     sums = sum(OUT.body_angular_momentum[:, [at]] * path for at, path in enumerate(axes))
     assert sums == pytest.approx(np.tile(direction * np.sqrt(OUT.casimir[0]), (len(T), 1)), rel=1e-13, abs=1e-13)
@@ -62,7 +66,7 @@ def test_components_and_angles_against_time():
 def test_the_nutation_trace_stays_between_its_circles():
     low, high, path, _ = [drawn(line) for line in SPUN.plot().axes[0].lines]
     expected = TOP.nutation_range(**START)
-    assert (low[0, 2], high[0, 2]) == pytest.approx(np.cos(expected), rel=1e-14)
+    assert (low[0, 2], high[0, 2]) == pytest.approx(np.cos(expected), rel=1e-14, abs=0)
     assert np.array_equal(path, SPUN.axis)
     assert high[0, 2] - 1e-13 <= path[:, 2].min() < path[:, 2].max() <= low[0, 2] + 1e-13
 
@@ -94,7 +98,7 @@ def test_tops_at_the_poles():
             assert np.all(np.isfinite(values)), start
         _, _, path, _ = [drawn(line) for line in out.plot().axes[0].lines]
         assert np.array_equal(path, out.axis)
-        assert np.abs(out.energy - out.energy[0]).max() <= 1e-11 * (np.abs(out.energy[0]) + 20.0)
+        assert np.abs(out.energy - out.energy[0]).max() <= 2e-14 * (np.abs(out.energy[0]) + 20.0)
 
 
 def test_sizes_do_not_matter():
@@ -168,10 +172,10 @@ def test_the_torque_turns_the_angular_momentum_of_a_top():
 
 def test_what_stays_of_a_free_body():
     momentum = OUT.body_angular_momentum
-    assert OUT.casimir == pytest.approx((momentum[0] ** 2).sum(), rel=1e-13)
-    assert OUT.casimir == pytest.approx((OUT.angular_momentum**2).sum(axis=-1), rel=1e-13)
+    assert OUT.casimir == pytest.approx((momentum[0] ** 2).sum(), rel=1e-13, abs=0)
+    assert OUT.casimir == pytest.approx((OUT.angular_momentum**2).sum(axis=-1), rel=1e-13, abs=0)
     single = vv.rigid.free_rotation(MOMENTS, [1.0, 2.0, 3.0], 0.0)
-    assert single.casimir == pytest.approx(1 + 16 + 56.25)
+    assert single.casimir == pytest.approx(1 + 16 + 56.25, rel=1e-14, abs=0)
 
 
 def test_pictures_go_where_they_are_asked_to():

@@ -1,6 +1,5 @@
 """Counts of beams and of foils: kept in files, gone on with, counted elsewhere, and refused where files are damaged."""
 
-import json
 import multiprocessing
 import pickle
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
@@ -9,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from kept_files import parts, refused, written
 
 import visviva as vv
 
@@ -162,25 +162,6 @@ def good(request, tmp_path):
     return path
 
 
-def refused(path):
-    try:
-        vv.load(path)
-    except vv.InvalidInput as error:
-        return error.argument == "path"
-    return False
-
-
-def parts(path):
-    with np.load(path) as file:
-        arrays = dict(file)
-    return json.loads(arrays.pop("header").tobytes()), arrays
-
-
-def write(path, header, arrays):
-    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
-    return path
-
-
 def test_a_truncated_file_is_refused(good):
     whole = good.read_bytes()
     for length in range(0, len(whole), 101):
@@ -202,12 +183,43 @@ def test_flipped_bytes_of_contents_are_refused(good):
 
 def test_arrays_that_are_missing_or_do_not_fit_are_refused(good):
     header, arrays = parts(good)
-    assert not refused(write(good, header, arrays))
+    assert not refused(written(good, header, arrays))
     for name, array in arrays.items():
-        assert refused(write(good, header, {other: arrays[other] for other in arrays if other != name})), name
+        assert refused(written(good, header, {other: arrays[other] for other in arrays if other != name})), name
         for damaged in (array[None], array[:0], np.concatenate([array, array]), array.astype(str)):
-            assert refused(write(good, header, arrays | {name: damaged})), name
-    assert refused(write(good, header | {"version": header["version"] + 1}, arrays))
+            assert refused(written(good, header, arrays | {name: damaged})), name
+    assert refused(written(good, header | {"version": header["version"] + 1}, arrays))
+
+
+@pytest.mark.parametrize(
+    ("events", "says"),
+    [
+        ([], "counts of no events"),
+        ([[7, 0.0, 50]], "counts of no events"),
+        ([[7, 0, 50], [8, 0, 0.5]], "counts of no events"),
+        ([[-1, 0, 50]], "events that there are not"),
+        ([[2**64, 0, 50]], "events that there are not"),
+        ([[7, -1, 49]], "events that there are not"),
+        ([[7, 0, 50], [8, 3, 3]], "events that there are not"),
+        ([[7, 2**63 - 49, 2**63 + 1]], "events that there are not"),
+        ([[8, 0, 25], [7, 0, 25]], "events that are not sorted"),
+        ([[7, 0, 25], [7, 25, 50]], "events that are not sorted"),
+    ],
+)
+def test_what_is_wrong_with_events_is_said(events, says, tmp_path):
+    path = tmp_path / "counts.npz"
+    beam(50).save(path)
+    header, arrays = parts(path)
+    with pytest.raises(vv.InvalidInput, match=says):
+        vv.load(written(path, header | {"events": events}, arrays))
+
+
+def test_the_first_and_the_last_events_of_all_are_kept(tmp_path):
+    how = {"beam_energy": 1e3, "masses": (1.0, 4.0), "b_max": 2.0, "bins": 12}
+    for seed, first, n in ((0, 0, 1), (2**64 - 1, 2**63 - 50, 50)):
+        counted = S.monte_carlo(YUKAWA, **how, n_events=n, seed=seed, first_event=first)
+        counted.save(tmp_path / "counts.npz")
+        assert vv.load(tmp_path / "counts.npz") == counted
 
 
 @pytest.mark.parametrize("name", FOILS)
@@ -221,19 +233,19 @@ def test_every_key_and_every_count_of_a_foil_is_looked_at(name, tmp_path):
             if key == "written_by":  # nobody reads it
                 continue
             del group[key]
-            assert refused(write(path, header, arrays)), key
+            assert refused(written(path, header, arrays)), key
             for wrong in ("x", [], {}, True, -1.5, [[1, 2, 3]], 10**400):
                 group[key] = wrong
                 number = isinstance(kept, int | float) and wrong == -1.5
-                assert refused(write(path, header, arrays)) or number, (key, wrong)
+                assert refused(written(path, header, arrays)) or number, (key, wrong)
             group[key] = kept
     for array in arrays:
         for place in ((0, 0), (1, 1)) if array.endswith("sums") else ((0,),):
             changed = arrays[array].copy()
             changed[place] = changed[place] + np.uint64(1) if array.endswith("sums") else 1e9
-            assert refused(write(path, header, arrays | {array: changed})), (array, place)
+            assert refused(written(path, header, arrays | {array: changed})), (array, place)
     for events in ([], [[7, 0, 49]], [[7, 0, 51]], [[7, 25, 50], [7, 0, 25]], [[7, 0, 30], [7, 20, 40]], [[7, 50, 0]],
                    [[7, 0.0, 50]], [[-1, 0, 50]], [[7, 0]]):  # fmt: skip
-        assert refused(write(path, header | {"events": events}, arrays)), events
+        assert refused(written(path, header | {"events": events}, arrays)), events
     for more in ({"stray": np.zeros(3)}, {"9/sums": arrays["sums"]}):
-        assert refused(write(path, header, arrays | more))
+        assert refused(written(path, header, arrays | more))

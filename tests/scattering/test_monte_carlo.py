@@ -5,12 +5,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kept_files import the_old_file_stays
 
 import visviva as vv
 
@@ -95,19 +95,7 @@ def test_extreme_masses_and_potentials_lose_no_event(masses: tuple[float, float]
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "counts.npz"
     result = vv.scattering.monte_carlo(
         vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1
     )
-    result.save(path)
-    before = path.read_bytes()
-
-    def full_disk(file: Any, **_: object) -> None:
-        file.write(b"half")
-        raise OSError("no space left")
-
-    monkeypatch.setattr(np, "savez", full_disk)
-    with pytest.raises(OSError, match="no space left"):
-        result.save(path)
-    assert path.read_bytes() == before
-    assert [entry.name for entry in tmp_path.iterdir()] == ["counts.npz"]
+    the_old_file_stays(tmp_path / "counts.npz", result, result, monkeypatch)

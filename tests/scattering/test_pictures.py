@@ -1,11 +1,11 @@
 """Pictures of scattering, by what is drawn: lines where there are motions, breaks where the function has them."""
 
-from io import BytesIO
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from drawn import columns, named, nothing_is_clipped
 
 import visviva as vv
 
@@ -18,23 +18,10 @@ def deflect(potential: vv.potentials.Potential, energy: Any, b: Any = B) -> vv.s
     return vv.scattering.deflect(potential, energy=energy, impact_parameter=b)
 
 
-def columns(line: Any) -> tuple[np.ndarray, np.ndarray]:
-    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
-
-
-def named(axes: Any) -> dict[str, Any]:
-    return dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-
-
 def fits(figure: Any, *, beside: bool = True) -> None:
     """Nothing is clipped, and the legend lies beside the lines."""
-    figure.savefig(BytesIO())  # which lays it out
+    nothing_is_clipped(figure)
     for axes in figure.axes:
-        box = axes.get_tightbbox()
-        assert figure.bbox.padded(1).containsx(box.x0)
-        assert figure.bbox.padded(1).containsx(box.x1)
-        assert figure.bbox.padded(1).containsy(box.y0)
-        assert figure.bbox.padded(1).containsy(box.y1)
         if beside and axes.get_legend() is not None:
             assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
 
@@ -53,7 +40,7 @@ def test_each_energy_is_a_line_with_its_rainbow() -> None:
         ]
         x, y = columns(mark)
         assert abs(x[0] - B[psi.argmin()]) < 0.01
-        assert y[0] == pytest.approx(psi.min(), rel=1e-3)
+        assert y[0] == pytest.approx(psi.min(), rel=1e-3, abs=0)
     # Of E = 10 one impact parameter leads straight on; at E = 2, one too: there the line crosses 0.
     glories = [columns(line) for line in axes.lines if line.get_marker() == "s"]
     assert sorted(float(x[0]) for x, _ in glories) == pytest.approx(
@@ -105,7 +92,7 @@ def test_a_cross_section_sums_up_to_the_total_one() -> None:
         first, last = (
             vv.scattering.total_cross_section(screened, energy=energy, theta_min=at) for at in angle[[0, -1]]
         )
-        assert area == pytest.approx(first - last, rel=0.02)
+        assert area == pytest.approx(first - last, rel=0.02, abs=0)
     fits(figure)
 
 
@@ -133,7 +120,7 @@ def test_the_closest_approach_is_beside_a_straight_line() -> None:
     axes = found.plot("closest_approach").axes[0]
     b, nearest = columns(named(axes)["E = 1"])
     # r of the turning point, 1/2E + √(1/4E² + b²).
-    assert nearest == pytest.approx(0.5 + np.sqrt(0.25 + b**2), rel=1e-12)
+    assert nearest == pytest.approx(0.5 + np.sqrt(0.25 + b**2), rel=1e-12, abs=0)
     assert "straight on" in named(axes)
 
 
@@ -145,7 +132,7 @@ def test_axes_of_ones_own_and_single_motions() -> None:
     b, psi = columns(own.lines[0])
     assert b.tolist() == [2.0]
     angle = vv.scattering.deflection_angle(ATOM, energy=1.0, impact_parameter=2.0)
-    assert np.radians(psi[0]) == pytest.approx(angle, rel=1e-14)
+    assert np.radians(psi[0]) == pytest.approx(angle, rel=1e-14, abs=0)
     assert own.lines[0].get_marker() == "o"
 
 
