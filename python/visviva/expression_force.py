@@ -99,10 +99,15 @@ def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
     if callable(force):
         check_call("force", force, ("position", "velocity", "t"), names)
-        return tuple((lambda *state, c=c, **own: _component(force(*state, **own), c)) for c in range(3))
+        return tuple(_one_of(force, c) for c in range(3))
     if isinstance(force, str) or not hasattr(force, "__len__") or len(force) != 3:
         raise InvalidInput("force", f"expected three components, or a function that gives them, got {force!r}")
     return tuple(force)
+
+
+def _one_of(force: Callable[..., Any], which: int) -> Callable[..., Any]:
+    # Without a name of its own among the arguments: those of parameters may be any.
+    return lambda *state, **own: _component(force(*state, **own), which)
 
 
 def _component(components: Any, which: int) -> Any:

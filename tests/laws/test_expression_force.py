@@ -244,6 +244,20 @@ def test_copies_with_parameters_of_their_own_move_as_alone(count: int, method: d
         assert np.array_equal(out.energy[copy], alone.energy)
 
 
+@pytest.mark.parametrize("name", ["c", "state", "own", "which", "force", "components"])
+def test_a_parameter_may_have_any_name(name: str) -> None:
+    drag = vv.ExpressionForce(
+        force=lambda r, v, t, **own: tuple(-own[name] * component for component in v), parameters={name: 0.5}
+    )
+    alone = eval(f"lambda r, v, t, {name}: (-{name} * v[0], -{name} * v[1], -{name} * v[2])")
+    of_name = vv.ExpressionForce(force=alone, parameters={name: 0.5})
+    for force in (drag, of_name):
+        found = vv.Scene(bodies(2), force).acceleration()
+        np.testing.assert_allclose(found, -0.5 * bodies(2).velocity / bodies(2).mass[:, None], rtol=1e-15)
+    with_default = vv.ExpressionForce(force=lambda r, v, t, c=2.0: (-c * v[0], -c * v[1], -c * v[2]))
+    assert vv.Scene(bodies(2), with_default).acceleration().any()
+
+
 def test_parameters_of_copies_are_asked_by_name() -> None:
     trap = vv.ExpressionForce(potential=k * x**2, parameters={k: 2.0})
     scene = vv.Scene(bodies(2), trap)
