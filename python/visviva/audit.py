@@ -181,8 +181,9 @@ def work(
 
     Notes
     -----
-    Gauss–Legendre with 8 places in each of ever more pieces, until two in turn agree. Goldstein, Poole & Safko,
-    Classical Mechanics, 3rd ed., equation 1.10.
+    Gauss–Legendre with 8 places in each of ever more pieces, until two in turn agree. What is felt over less than a
+    thousandth of a smooth path, or of a line, may fall between all places: give it corners there. Goldstein, Poole &
+    Safko, Classical Mechanics, 3rd ed., equation 1.10.
 
     Examples
     --------
@@ -253,10 +254,13 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     _on_each(force)
     t, x, v = trajectory.t, trajectory.position, trajectory.velocity
     mass = trajectory.scene.particles.mass
+    if len(t) < 2:
+        return np.zeros((len(t), len(mass)))
     before, after = slice(None, -1), slice(1, None)
     h = np.diff(t)[:, None, None]
     middle_x = 0.5 * (x[before] + x[after]) + 0.125 * h * (v[before] - v[after])
-    middle_v = 1.5 * (x[after] - x[before]) / h - 0.25 * (v[before] + v[after])
+    # Between two rows of one time nothing is done, whatever the velocity.
+    middle_v = 1.5 * (x[after] - x[before]) / np.where(h != 0.0, h, 1.0) - 0.25 * (v[before] + v[after])
     ends = _power(force, mass, t, x, v)
     middle = _power(force, mass, 0.5 * (t[before] + t[after]), middle_x, middle_v)
     steps = h[:, :, 0] / 6.0 * (ends[before] + 4.0 * middle + ends[after])

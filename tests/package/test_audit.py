@@ -168,6 +168,23 @@ def test_what_depends_on_the_motion_is_not_called_conservative(force: vv.forces.
     assert vv.audit.curl(at_rest, [[1.0, 2.0, 3.0]]).value.shape == (1, 3)
 
 
+@pytest.mark.parametrize("width", [1e-2, 2e-3, 1e-3])
+def test_what_is_felt_for_a_short_part_of_a_path_does_work(width: float) -> None:
+    for middle in np.linspace(0.1, 0.9, 9) + 0.0333:
+
+        def bump(r: Points, middle: float = middle) -> Points:
+            return np.outer(np.exp(-(((r[:, 0] - middle) / width) ** 2)), [1.0, 2.0, 0.0])
+
+        work = vv.audit.work(bump, [[0.0, 0, 0], [1.0, 0, 0]], rtol=1e-10)
+        assert work == pytest.approx(np.sqrt(np.pi) * width, rel=1e-8)
+
+
+def test_no_work_is_done_in_no_time() -> None:
+    scene = vv.Scene(vv.Particles([1.0, 2.0], [[1.0, 0, 0], [0, 1.0, 0]], [[0, 1.0, 0]] * 2), vv.Harmonic(1.0))
+    assert vv.audit.work_along(scene.run(t=[0.0]), scene.forces[0]).tolist() == [[0.0, 0.0]]
+    assert vv.audit.work_along(scene.run(t=[0.0, 0.0]), scene.forces[0]).tolist() == [[0.0, 0.0]] * 2
+
+
 def test_refusals() -> None:
     with pytest.raises(vv.InvalidInput, match="acts between bodies"):
         vv.audit.field(vv.Gravity(1.0))

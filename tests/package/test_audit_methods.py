@@ -133,3 +133,10 @@ def test_a_line_that_turns_is_rigid_and_a_spring_is_not() -> None:
     for pairs in ([(0, 0)], [(0, 2)], [(-1, 0)]):
         with pytest.raises(vv.InvalidInput, match="two of the bodies 0 to 1"):
             vv.audit.rigidity(spring, pairs)
+
+
+def test_methods_are_judged_by_bodies() -> None:
+    nobody = vv.Scene(vv.Particles(np.zeros(0), np.zeros((0, 3))), vv.Gravity(1.0))
+    for asked in (vv.audit.symplecticity, vv.audit.reversal, vv.audit.order):
+        with pytest.raises(vv.InvalidInput, match=r"^scene: expected bodies"):
+            asked(nobody, 1.0, method="leapfrog", dt=0.1)  # type: ignore[operator]
