@@ -27,6 +27,8 @@ _NEAR = 2.0**-11
 def _check(scene: object) -> None:
     if not isinstance(scene, Scene):
         raise InvalidInput("scene", f"expected a Scene, got {type(scene).__name__}")
+    if not len(scene.particles):
+        raise InvalidInput("scene", "expected bodies, got a scene of none")
 
 
 def _end(scene: Scene, t: float, method: MethodName | Method, dt: float) -> NDArray[np.float64]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
-from visviva._quadrature import line_integral
+from visviva._quadrature import time_integral
 from visviva.errors import InvalidInput
 from visviva.trajectory import Trajectory
 
@@ -47,7 +47,9 @@ def impulse(
 
     Notes
     -----
-    Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.1; the quadrature is that of `work`.
+    Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.1. Gauss–Legendre with 8 times in each of 512
+    pieces of the span, and in ever more where it has not settled. A blow that is shorter than a two-thousandth of the
+    span may fall between all of these times, and count for nothing: give a span around it.
 
     Examples
     --------
@@ -63,19 +65,7 @@ def impulse(
     start, end = float_array("span", span, (2,))
     rtol = positive("rtol", rtol)
 
-    def component(axis: int) -> float:
-        def along(places: NDArray[np.float64]) -> NDArray[np.float64]:
-            pushed = np.zeros_like(places)
-            pushed[:, 0] = float_array("force", force(places[:, 0]), places.shape)[:, axis]
-            return pushed
-
-        def times(s: NDArray[np.float64]) -> NDArray[np.float64]:
-            zeros = np.zeros_like(s)
-            return np.stack([start + s * (end - start), zeros, zeros], axis=-1)
-
-        return line_integral(along, times, rtol)
-
-    return np.array([component(axis) for axis in range(3)])
+    return time_integral(force, start, end, rtol)
 
 
 @known_keywords

@@ -22,6 +22,7 @@ __all__ = [
     "distance_table",
     "formulas",
     "looks_at_time",
+    "looks_at_velocities",
     "parameter_names",
     "parameter_values",
     "table",
@@ -61,10 +62,20 @@ def parameter_values(numbers: Iterable[float], values: Sequence[float]) -> dict[
 
 def looks_at_time(numbers: Iterable[float]) -> bool:
     """Whether anything in a table, which has the time in it with or without need, depends on it."""
+    return any(_OPERATIONS[operation] == "time" for operation, _ in _needed(numbers))
+
+
+def looks_at_velocities(numbers: Iterable[float]) -> bool:
+    """Whether anything in a table of a force depends on a velocity, the last three of its six variables."""
+    return any(_OPERATIONS[operation] == "variable" and value >= 3 for operation, value in _needed(numbers))
+
+
+def _needed(numbers: Iterable[float]) -> Iterator[tuple[int, float]]:
+    """Operation and value of every node that another one, or the result, is made of."""
     numbers = list(numbers)
     rows = [row for row in _rows(numbers) if row[0] != _NAME]
     needed = {int(at) for at in (*numbers[1 : 1 + int(numbers[0])], *(at for row in rows for at in row[2]))}
-    return any(_OPERATIONS[rows[at][0]] == "time" for at in needed)
+    return ((rows[at][0], rows[at][1]) for at in sorted(needed))
 
 
 def formulas(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> list[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from visviva._arrays import float_array, in_range
 from visviva._keywords import known_keywords
 from visviva._moves import displacement, orthogonal
+from visviva._turning import centers_of_turned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from visviva.forces import Force
     from visviva.particles import Particles
+    from visviva.rigid_bodies import RigidBodies
 
 __all__ = ["Framed"]
 
@@ -32,6 +34,7 @@ class Framed(ABC):
     particles: Particles
     forces: tuple[Force, ...]
     t0: float
+    rigid_bodies: RigidBodies | None
 
     @abstractmethod
     def _like(
@@ -243,6 +246,9 @@ class Framed(ABC):
     ) -> Self:
         """The scene with other positions, velocities, or another time; what is not given stays.
 
+        A fixed point of a rigid body stays where it is in space, unless `position` is given, and the velocity of its
+        center of mass follows from `orientation` and `angular_velocity`, unless `velocity` is given.
+
         Parameters
         ----------
         position, velocity : array_like, shape (N, 3), optional
@@ -262,7 +268,8 @@ class Framed(ABC):
         Raises
         ------
         visviva.InvalidInput
-            For another shape, NaN or infinity.
+            For another shape, NaN or infinity; an orientation or an angular velocity without rigid bodies; a velocity
+            of a body with a fixed point that does not follow from its spin.
 
         Examples
         --------
@@ -280,4 +287,6 @@ class Framed(ABC):
         moved = self.particles._changed(**state) if state else self.particles
         given = {"orientation": orientation, "angular_velocity": angular_velocity}
         turning: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+        if turning:
+            moved = centers_of_turned(self.rigid_bodies, moved, turning, given=frozenset(state))
         return self._like(moved, self.forces, self.t0 if t0 is None else t0, **turning)

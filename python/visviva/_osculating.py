@@ -17,7 +17,7 @@ from visviva._arrays import number
 from visviva._exported import labels
 from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, body_label
 from visviva.errors import InvalidInput
-from visviva.forces import Gravity
+from visviva.forces import Gravity, RotatingFrame
 from visviva.orbits import Elements, elements
 from visviva.orbits._elements import labeled
 
@@ -66,9 +66,13 @@ def elements_of(
         # Copies may have a G of their own.
         mass = mass[:, None, :]
         constant = np.array([gravitational_constant(forces, G) for forces in start.forces])[:, None]
+        turning = np.array([_turning(forces) for forces in start.forces])[:, None, None]
     else:
         assert isinstance(start, Scene)
-        mass, constant = mass[0], gravitational_constant(start.forces, G)
+        mass, constant, turning = mass[0], gravitational_constant(start.forces, G), _turning(start.forces)
+    if turning.any():
+        # An orbit is that in an inertial frame, along the axes of the instant; its center is the same for all bodies.
+        velocity = velocity + np.cross(turning, position)
     gone = np.zeros(mass.shape, dtype=bool)
     if merged is not None:
         gone, mass = merged
@@ -106,6 +110,14 @@ def elements_of(
     else:
         along["body"] = labels(names, count)[chosen]
     return labeled(found, along)
+
+
+def _turning(forces: tuple[Force, ...]) -> NDArray[np.float64]:
+    """The angular velocity of the frame in which velocities are."""
+    found = [np.array(force.omega) for force in forces if isinstance(force, RotatingFrame)]
+    if len(found) > 1:
+        raise InvalidInput("about", f"expected one RotatingFrame, in which velocities are, got {len(found)}")
+    return found[0] if found else np.zeros(3)
 
 
 def _check_chosen(chosen: list[int], parent: str | int, names: tuple[str, ...]) -> None:

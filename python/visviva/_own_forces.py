@@ -114,7 +114,7 @@ def _place(scene: Scene, which: Any) -> int:
     """The place of a force that is given itself, by its place, or by the name of its class."""
     forces = scene.forces
     shown = ", ".join(map(repr, forces)) or "none"
-    if any(which in (force, type(force).__name__) for force in scene.body_forces):
+    if any(which in (force, *_names(force)) for force in scene.body_forces):
         raise InvalidInput(
             "parameters",
             f"expected a force on points ({shown}), got {which!r}: what acts on rigid bodies is the same in all "
@@ -129,11 +129,17 @@ def _place(scene: Scene, which: Any) -> int:
     if isinstance(which, Force):
         # The scene keeps indices where bodies were named.
         which = which._resolved(scene.particles.names, len(scene.particles))
-    found = [i for i, force in enumerate(forces) if which in (force, type(force).__name__)]
+    found = [i for i, force in enumerate(forces) if which in (force, *_names(force))]
     if len(found) != 1:
         why = "it has none like that" if not found else "it has several like that: give the place of one"
         raise InvalidInput("parameters", f"expected a force of the scene ({shown}), got {which!r}; {why}")
     return found[0]
+
+
+def _names(force: object) -> tuple[str, ...]:
+    """By what a force is called: its class, and what makes one of it where that is not the class."""
+    made_by = ("ExpressionForce",) if isinstance(force, ExpressedForce) else ()
+    return (type(force).__name__, *made_by)
 
 
 def described(copies: tuple[tuple[Force, ...], ...]) -> _core._OwnForces:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
 
 __all__ = [
+    "centers_of_turned",
     "checked_turning",
     "core_rigid_of_copies",
     "described",
@@ -90,6 +91,39 @@ def with_centers(found: Sequence[Particles], bodies: RigidBodies, names: Sequenc
     return Particles(**arrays, names=names or None, radius=radius)
 
 
+def centers_of_turned(
+    rigid: RigidBodies | None, points: Particles, turning: dict[str, ArrayLike], *, given: frozenset[str]
+) -> Particles:
+    """The points of a scene whose rigid bodies are turned: held ones stay, and what moves with a spin has that of now.
+
+    What is in `given`, positions or velocities, is as it is.
+    """
+    if rigid is None:
+        raise _no_bodies(next(iter(turning)))
+    turned = rigid._changed(**turning)
+    own: dict[str, NDArray[np.float64]] = {}
+    if "position" not in given:
+        own["position"] = _held(rigid, turned.orientation, points.position[-len(rigid) :])
+    if "velocity" not in given:
+        own["velocity"] = turned.velocity
+    return points._changed(**{n: np.concatenate([getattr(points, n)[: -len(rigid)], a]) for n, a in own.items()})
+
+
+def _held(rigid: RigidBodies, turns: NDArray[np.float64], centers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Centers (…, K, 3) of bodies turned so (…, K, 4), those with a fixed point where that stays in space."""
+    if rigid.pivot is None:
+        return centers
+    # A body whose orientation is its own stays where it is, to the bit.
+    same = (turns == rigid.orientation).all(axis=-1)
+    moved = rigid.pivoted & ~same
+    arms = rotate(turns, np.broadcast_to(np.nan_to_num(rigid.pivot), centers.shape))
+    return np.where(moved[..., None], rigid.fixed_point - arms, centers)
+
+
+def _no_bodies(name: str) -> InvalidInput:
+    return InvalidInput(name, "expected None: the scene has no rigid bodies")
+
+
 def checked_turning(
     scene: Scene, orientation: ArrayLike | None, angular_velocity: ArrayLike | None
 ) -> dict[str, NDArray[np.float64]]:
@@ -99,7 +133,7 @@ def checked_turning(
         if value is None:
             continue
         if rigid is None:
-            raise InvalidInput(name, "expected None: the scene has no rigid bodies")
+            raise _no_bodies(name)
         width = 4 if name == "orientation" else 3
         given[name] = float_array(name, value, ("B", len(rigid), width))
     if rigid is not None and "orientation" in given:
@@ -130,12 +164,8 @@ def core_rigid_of_copies(
         each = turning.get(name, arrays[name])
         arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
     if rigid.pivoted.any() and "orientation" in turning and "position" not in given:
-        pivot = np.nan_to_num(rigid.pivot) if rigid.pivot is not None else np.zeros((len(rigid), 3))
-        arms = rotate(core_rigid["orientation"], np.broadcast_to(pivot, (count, len(rigid), 3)))
-        centers = full["position"][:, -len(rigid) :]
-        held = rigid.pivoted[None, :, None]
         placed = full["position"].copy()
-        placed[:, -len(rigid) :] = np.where(held, rigid.fixed_point - arms, centers)
+        placed[:, -len(rigid) :] = _held(rigid, core_rigid["orientation"], placed[:, -len(rigid) :])
         placed.setflags(write=False)
         full["position"] = placed
     if rigid.pivot is not None and (turning or "velocity" in given):

@@ -4,17 +4,17 @@ The one idea: on the first stretch of the very run every method of the registry 
 against a reference, and the largest that hold what the stretch may be off are compared by their time. From the stretch
 to the whole, errors grow as the theory has it: the energy of a symplectic method not at all and its phase linearly, the
 energy of any other method linearly and its phase quadratically. A motion that is chaotic, or one that has its hardest
-part after the stretch, is worse than that.
+part after the stretch, is worse than that: so where a reference does the whole span in about a second, the fastest of
+what was found are run over all of it, and made tighter until they hold there.
 Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration* 2nd ed., IX.8, X.3.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from visviva._advice_trial import TIGHTEST, trial_of
 from visviva._arrays import number
 from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords, one_of
@@ -25,15 +25,20 @@ from visviva.integrators import methods
 
 if TYPE_CHECKING:
     from visviva import _core
+    from visviva._advice_trial import Trial
     from visviva.integrators import Method
-    from visviva.typing import RunSettings
+    from visviva.typing import MethodName, RunSettings
 
 __all__ = ["Advice", "Option", "advise"]
 
-# The reference of a stretch takes this long, and its error is below this one.
-_SECONDS, _FLOOR = 0.03, 5e-13
-_OUTPUTS = 32
-_TIGHTEST = 2.3e-14
+# Errors below this one float64 tells little of.
+_FLOOR = 5e-13
+# What trials of the whole span take together, and by how many steps of the ladder an option is tightened there at most.
+_BUDGET, _TIGHTER = 2.0, 8
+# No step is done in less time, whatever a stretch of a few of them tells.
+_STEP = 2e-8
+# A stretch that a reference does in so many seconds is as long as one for which a method is given up at all.
+_LEAST = 0.03 / 8.0
 # Beyond so many halvings of a step, or if a trial takes so many times the fastest, a method is given up.
 _HALVINGS, _PATIENCE = 16, 8.0
 
@@ -48,7 +53,7 @@ class Option(Record):
     how : dict
         Arguments for ``run``: ``method``, and ``dt`` or ``rtol``.
     error : float
-        What the run is expected to be off, relative, without dimension.
+        What the run is expected to be off, relative, without dimension: at most, at 32 times.
     steps : int
     seconds : float
         What it is expected to take, in seconds.
@@ -125,9 +130,8 @@ class Advice(Shown):
         return Sheet(self._title(), self._rows(), ("", "dt or rtol", "error", "steps", "time"))
 
     def _title(self) -> str:
-        part = "the whole of it" if self.tried == 1.0 else f"the first {self.tried:.2g} of it"
         of = f"{self.of}, and positions of massless bodies," if self.judges_massless else self.of
-        return f"{of} to {self.accuracy:g}, by a trial of {part}"
+        return f"{of} to {self.accuracy:g}, by a trial of {_part(self.tried)}"
 
     def _rows(self) -> list[tuple[str, str, str, str, str]]:
         rows: list[tuple[str, str, str, str, str]] = []
@@ -137,47 +141,6 @@ class Advice(Shown):
             name = option.how["method"] if by is not None else "auto: closed form"
             rows.append((name, shown, f"{option.error:.1e}", f"{option.steps}", f"{option.seconds:.2g} s"))
         return rows
-
-
-@dataclass(frozen=True, slots=True)
-class _Judged:
-    """What is judged: a column, of some bodies, over a scale; and what it was in the reference."""
-
-    column: str
-    bodies: Any
-    scale: float
-    reference: Any
-
-    def error(self, columns: dict[str, Any]) -> float:
-        return float(np.abs(_of(columns, self.column, self.bodies) - self.reference).max()) / self.scale
-
-    def growth(self, method: Method, whole: float) -> float:
-        """By how much the error of a run is more than that of its stretch, which it is `whole` times as long as."""
-        return float(whole ** ((0 if method.symplectic else 1) + (1 if self.column == "position" else 0)))
-
-
-@dataclass(frozen=True, slots=True)
-class _Trial:
-    """The stretch that is tried: what is asked, how much of it, and the reference there."""
-
-    asked: dict[str, Any]
-    fraction: float
-    judged: tuple[_Judged, ...]
-    seconds: float
-    step: float
-
-    def of_method(self, method: Method, **how: float) -> tuple[float, int, float] | None:
-        """Error of the whole, steps and seconds of the stretch; None if a method does not get through it."""
-        asked = self.asked | {"method": method.name, "dt": None, "rtol": 1e-9} | how
-        try:
-            found = _measured(asked, self.fraction, [judged.column for judged in self.judged])
-        except InvalidInput:
-            return None
-        if found is None:
-            return None
-        columns, steps, seconds = found
-        whole = 1.0 / self.fraction
-        return max(judged.error(columns) * judged.growth(method, whole) for judged in self.judged), steps, seconds
 
 
 def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: str, closed: bool) -> Advice:
@@ -194,90 +157,81 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
     if closed:
         # Closed forms are right to some ulps.
         return Advice(wanted, of, massless, (Option({"method": "auto"}, 1e-14, 0, run_stretch(asked, 1.0)[1]),), 1.0)
-    trial = _reference(prepared, dict(asked), of)
+    trial = trial_of(prepared, dict(asked), of)
+    _check_reference(trial, wanted, of)
     options: list[Option] = []
     # The best are likely among those of high order: with their times known, others are soon given up.
     for method in sorted(methods(), key=lambda method: -method.order):
         fastest = min((option.seconds * trial.fraction for option in options), default=trial.seconds)
-        option = _option(trial, method, wanted, _PATIENCE * max(fastest, _SECONDS / 8.0))
+        option = _option(trial, method, wanted, _PATIENCE * max(fastest, _LEAST))
         if option is not None:
             options.append(option)
+    options = _over_the_whole(trial, sorted(options, key=lambda option: option.seconds), wanted, of)
     if not options:
         raise ConvergenceError(
-            f"no method holds {wanted:g} of {of} over this span, as far as a trial of its first {trial.fraction:.2g} "
-            "tells; ask for less, or for a shorter span"
+            f"no method holds {wanted:g} of {of} over this span, as far as a trial of {_part(trial.fraction)} tells; "
+            "ask for less, or for a shorter span"
         )
-    return Advice(wanted, of, massless, tuple(sorted(options, key=lambda option: option.seconds)), trial.fraction)
+    return Advice(wanted, of, massless, tuple(options), trial.fraction)
 
 
-def _of(columns: dict[str, Any], column: str, bodies: Any) -> Any:
-    return columns[column][0] if bodies is None else columns[column][0][:, bodies]
+def _part(fraction: float) -> str:
+    return "the whole of it" if fraction == 1.0 else f"the first {fraction:.2g} of it"
 
 
-def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
-    """The columns of a stretch, its steps and seconds; None if it does not come to its end."""
-    result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
-    if result["error"] or result["status"].any():
-        return None
-    return result["columns"], result["stats"]["steps"], seconds
+def _check_reference(trial: Trial, accuracy: float, of: str) -> None:
+    """Refuse what no run tells, as of a motion that has forgotten where it began."""
+    if trial.uncertain > accuracy:
+        raise ConvergenceError(
+            f"no run tells {of} to {accuracy:g} over {_part(trial.fraction)}: the two tightest of {trial.method} "
+            f"differ by {trial.uncertain:.1e}, as those of chaotic motions do; ask for less, or for a shorter span"
+        )
 
 
-def _reference(prepared: _core._Scene, asked: dict[str, Any], of: str) -> _Trial:
-    """A stretch that DOP853 does within a moment to the tightest tolerance, or the whole span."""
-    asked |= {"events": [], "max_steps": None, "continuation": None, "atol": None, "max_step": None}
-    tight = asked | {"method": "dop853", "dt": None, "rtol": _TIGHTEST}
-    massless = prepared["mass"][0] == 0.0
-    # A massless body has no energy by which it could be judged.
-    wanted = {"position": None} if of == "position" else {"energy": None, "position": massless}
-    if of == "energy" and not massless.any():
-        del wanted["position"]
-    elif massless.all():
-        wanted = {"position": None}
-    fraction, done = 1.0 / 65536.0, None
-    while True:
-        found = _measured(tight, fraction, list(wanted))
-        if found is None:
-            break
-        done = (fraction, *found)
-        if fraction == 1.0 or found[2] > _SECONDS:
-            break
-        fraction = min(1.0, 4.0 * fraction)
-    if done is None or done[2] == 0:
-        raise ConvergenceError("a trial of the first steps ended early, so there is nothing to advise on")
-    fraction, columns, steps, seconds = done
-    span = abs(float(asked["times"][-1]) - asked["t0"]) * fraction
-    judged = []
-    for column, bodies in wanted.items():
-        values = _of(columns, column, bodies)
-        scale = _size(prepared, values) if column == "position" else _energy_scale(prepared, float(values[0]))
-        judged.append(_Judged(column, bodies, scale or 1.0, values))
-    return _Trial(asked, fraction, tuple(judged), seconds, span / steps)
+def _over_the_whole(trial: Trial, options: list[Option], accuracy: float, of: str) -> list[Option]:
+    """The options, the fastest of them as they are over the whole span, where that can be tried in a moment.
+
+    One that is off by more there, because what is hard comes later, has its step or tolerance made smaller, or goes.
+    """
+    whole = trial.whole() if trial.fraction < 1.0 else None
+    if whole is None:
+        return options
+    _check_reference(whole, accuracy, of)
+    known = {method.name: method for method in methods()}
+    kept: list[Option] = []
+    # What the stretch told of times is told better by the whole.
+    spent, longer = 0.0, whole.seconds / (trial.seconds / trial.fraction)
+    for option in options:
+        if spent + max(longer * option.seconds, _STEP * option.steps) > _BUDGET:
+            kept.append(option)  # of which the stretch is all that is known
+            continue
+        by_step = "dt" in option.how
+        name, size, factor = ("dt", option.how["dt"], 0.5**0.5) if by_step else ("rtol", option.how["rtol"], 0.1**0.5)
+        for _ in range(_TIGHTER):
+            found = whole.of_method(known[option.how["method"]], **{name: size})
+            spent += found[2] if found is not None else longer * option.seconds
+            if found is not None and found[0] <= accuracy:
+                kept.append(Option(_settings(option.how["method"], name, size), *found))
+                break
+            size *= factor
+            if spent > _BUDGET or (name == "rtol" and size < TIGHTEST):
+                break
+    return sorted(kept, key=lambda option: option.seconds)
 
 
-def _size(prepared: _core._Scene, positions: Any) -> float:
-    """How far from the center of the bodies they are at first, or come."""
-    start = prepared["position"][0]
-    center = start.mean(axis=0)
-    return float(max(np.abs(positions - center).max(), np.abs(start - center).max()))
+def _settings(method: MethodName, name: str, size: float) -> RunSettings:
+    return {"method": method, "dt": size} if name == "dt" else {"method": method, "rtol": size}
 
 
-def _energy_scale(prepared: _core._Scene, start: float) -> float:
-    """The energy; where that is a small difference, the parts."""
-    mass, velocity = prepared["mass"][0], prepared["velocity"][0]
-    kinetic = 0.5 * float((mass * (velocity**2).sum(axis=1)).sum())
-    parts = kinetic + abs(start - kinetic)
-    return abs(start) if abs(start) > 1e-3 * parts else parts
-
-
-def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> Option | None:
+def _option(trial: Trial, method: Method, accuracy: float, patience: float) -> Option | None:
     """The largest step or tolerance with which a method holds the error over the whole, if it does in time."""
     whole = 1.0 / trial.fraction
-    if any(accuracy < _FLOOR * judged.growth(method, whole) for judged in trial.judged):
+    if accuracy < _FLOOR * trial.growth(method):
         return None
     direction = 1.0 if float(trial.asked["times"][-1]) >= trial.asked["t0"] else -1.0
     # From a step that is too long on: of as many evaluations as a longest one of the reference.
     sizes = (
-        [max(10.0 ** (-0.5 * k), _TIGHTEST) for k in range(4, 28)]
+        [max(10.0 ** (-0.5 * k), TIGHTEST) for k in range(4, 28)]
         if method.adaptive
         else [16.0 * direction * trial.step * method.stages / 12.0 * 2.0 ** (-0.5 * k) for k in range(2 * _HALVINGS)]
     )
@@ -299,9 +253,7 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
         found = trial.of_method(method, **{name: sizes[k]})
         if found is not None and found[0] <= accuracy:
             error, steps, seconds = found
-            how: RunSettings = {"method": method.name}
-            how["rtol" if method.adaptive else "dt"] = sizes[k]
-            return Option(how, error, round(steps * whole), seconds * whole)
+            return Option(_settings(method.name, name, sizes[k]), error, round(steps * whole), seconds * whole)
     return None
 
 

@@ -19,7 +19,7 @@ from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._audit_third_law import ThirdLaw, third_law
-from visviva._expression_table import looks_at_time
+from visviva._expression_table import looks_at_time, looks_at_velocities
 from visviva._html import Record
 from visviva._keywords import known_keywords, unknown_name
 from visviva._quadrature import line_integral
@@ -123,6 +123,34 @@ def _on_each(force: Force) -> None:
         raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
 
 
+def _looks_at_time(force: Force) -> bool:
+    return isinstance(force, DrivenForce) or (isinstance(force, ExpressedForce) and looks_at_time(force.nodes))
+
+
+def _looks_at_velocities(force: Force) -> bool:
+    """Of a drag, of what turns velocities, which has an axis, and of an expression that has them."""
+    turns = any(parameter.kind == "axial_vector" for parameter in force._parameters)
+    by_hand = isinstance(force, ExpressedForce) and looks_at_velocities(force.nodes)
+    return turns or force._at_rest == "medium" or by_hand
+
+
+def _of_places(force: Force | _Field) -> _Field:
+    """The field of what depends on places alone: of anything else work along a path and curl say nothing."""
+    if not isinstance(force, Force):
+        return force
+    at = field(force)
+    velocities, time = _looks_at_velocities(force), _looks_at_time(force)
+    if velocities or time:
+        looks, alone = ("velocities", "field(force)") if velocities else ("the time", "field(force, t0=...)")
+        what = "a body at rest feels of it" if velocities else "it is at one time"
+        raise InvalidInput(
+            "force",
+            f"expected a force of places alone, but {force!r} looks at {looks}, and so what it does depends on the "
+            f"motion: take vv.audit.work_along(run, force), or vv.audit.{alone}, which is what {what}",
+        )
+    return at
+
+
 @known_keywords
 def work(
     force: Force | _Field, path: ArrayLike | Callable[[NDArray[np.float64]], ArrayLike], *, rtol: float = 1e-12
@@ -134,7 +162,7 @@ def work(
     Parameters
     ----------
     force : Force or callable
-        A force, on a body of mass 1, or a function of places (K, 3) that gives forces (K, 3).
+        A force of places alone, on a body of mass 1, or a function of places (K, 3) that gives forces (K, 3).
     path : array_like, shape (P, 3), or callable
         The corners of straight lines, or a smooth function of s from 0 to 1, shape (K,), that gives places (K, 3).
     rtol : float
@@ -146,13 +174,16 @@ def work(
 
     Raises
     ------
+    visviva.InvalidInput
+        A force between bodies, or one that looks at velocities or at the time: see `work_along`.
     visviva.ConvergenceError
         If the integral does not settle: a field that jumps or is singular on the path.
 
     Notes
     -----
-    Gauss–Legendre with 8 places in each of ever more pieces, until two in turn agree. Goldstein, Poole & Safko,
-    Classical Mechanics, 3rd ed., equation 1.10.
+    Gauss–Legendre with 8 places in each of ever more pieces, until two in turn agree. What is felt over less than a
+    thousandth of a smooth path, or of a line, may fall between all places: give it corners there. Goldstein, Poole &
+    Safko, Classical Mechanics, 3rd ed., equation 1.10.
 
     Examples
     --------
@@ -165,7 +196,7 @@ def work(
     >>> round(vv.audit.work(vv.Harmonic(k=2.0), circle), 12) + 0.0
     0.0
     """
-    at = field(force) if isinstance(force, Force) else force
+    at = _of_places(force)
     rtol = positive("rtol", rtol)
     if callable(path):
         return line_integral(at, path, rtol)
@@ -223,10 +254,13 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     _on_each(force)
     t, x, v = trajectory.t, trajectory.position, trajectory.velocity
     mass = trajectory.scene.particles.mass
+    if len(t) < 2:
+        return np.zeros((len(t), len(mass)))
     before, after = slice(None, -1), slice(1, None)
     h = np.diff(t)[:, None, None]
     middle_x = 0.5 * (x[before] + x[after]) + 0.125 * h * (v[before] - v[after])
-    middle_v = 1.5 * (x[after] - x[before]) / h - 0.25 * (v[before] + v[after])
+    # Between two rows of one time nothing is done, whatever the velocity.
+    middle_v = 1.5 * (x[after] - x[before]) / np.where(h != 0.0, h, 1.0) - 0.25 * (v[before] + v[after])
     ends = _power(force, mass, t, x, v)
     middle = _power(force, mass, 0.5 * (t[before] + t[after]), middle_x, middle_v)
     steps = h[:, :, 0] / 6.0 * (ends[before] + 4.0 * middle + ends[after])
@@ -242,7 +276,7 @@ def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float6
 def _accelerations(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
     """Those of every body at every time, (T, N, 3): all times as so many more bodies, if a force is the same at all."""
     own = force._to_core()
-    if not (isinstance(force, DrivenForce) or (isinstance(force, ExpressedForce) and looks_at_time(force.nodes))):
+    if not _looks_at_time(force):
         several = [p.name for p in force._parameters if p.kind == "numbers" and np.ndim(own[p.name]) == 1]
         if all(len(own[name]) == len(mass) for name in several):
             of_all = own | {name: np.tile(own[name], len(t)) for name in several}
@@ -313,7 +347,8 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     Raises
     ------
     visviva.InvalidInput
-        For places of another shape, a force between bodies, or a function whose values have another shape.
+        For places of another shape, a force between bodies, one that looks at velocities or at the time, or a function
+        whose values have another shape.
 
     References
     ----------
@@ -329,7 +364,7 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     >>> turning.conservative, (turning.value[0].round(9) + 0.0).tolist()
     (False, [0.0, 0.0, 2.0])
     """
-    at = field(force) if isinstance(force, Force) else force
+    at = _of_places(force)
     x = float_array("places", places, (None, 3))
     if len(x) == 0:
         raise InvalidInput("places", "expected one place at least, got none")

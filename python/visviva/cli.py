@@ -55,28 +55,28 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     demo = commands.add_parser("demo", help="the outer Solar System, and Rutherford's experiment")
     _output(demo)
-    demo.add_argument("--days", type=_finite, default=1e6, help="how long to follow the planets (default: 1e6)")
-    demo.add_argument("--events", type=_finite, default=1e8, help="alpha particles to scatter (default: 1e8)")
+    demo.add_argument("--days", type=_positive, default=1e6, help="how long to follow the planets (default: 1e6)")
+    demo.add_argument("--events", type=_number, default=1e8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
     swing = commands.add_parser("pendulum", help="a pendulum against elliptic functions; double pendulums that part")
     _output(swing)
-    swing.add_argument("--members", type=_finite, default=1000, help="double pendulums (default: 1000)")
+    swing.add_argument("--members", type=_number, default=1000, help="double pendulums (default: 1000)")
     swing.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     swing.set_defaults(command=_pendulum)
     foil = commands.add_parser("geiger-marsden", help="alpha particles through silver and gold, against 1913")
     _output(foil)
-    foil.add_argument("--events", type=_finite, default=4e5, help="alpha particles for each metal (default: 4e5)")
-    foil.add_argument("--thickness", type=_finite, default=0.2, help="of the foils, in µm (default: 0.2)")
+    foil.add_argument("--events", type=_number, default=400_000, help="alpha particles for each metal (default: 4e5)")
+    foil.add_argument("--thickness", type=_positive, default=0.2, help="of the foils, in µm (default: 0.2)")
     foil.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     foil.set_defaults(command=_geiger_marsden)
     toutatis = commands.add_parser("toutatis", help="the asteroid that tumbles, against what radar saw of it")
     _output(toutatis)
-    toutatis.add_argument("--days", type=_finite, default=42.0, help="how long to follow it (default: 42)")
+    toutatis.add_argument("--days", type=_positive, default=42.0, help="how long to follow it (default: 42)")
     toutatis.set_defaults(command=_toutatis)
     dzhanibekov = commands.add_parser("dzhanibekov", help="the handle that flips over and over")
     _output(dzhanibekov)
-    dzhanibekov.add_argument("--flips", type=int, default=6, help="how many (default: 6)")
+    dzhanibekov.add_argument("--flips", type=_number, default=6, help="how many (default: 6)")
     dzhanibekov.set_defaults(command=_dzhanibekov)
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
     stress = commands.add_parser("stress", help="how each method copes with extreme scenes")
@@ -91,11 +91,19 @@ def _output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", type=Path, default=Path("demo-output"), help="folder for pictures and saved runs")
 
 
-def _finite(text: str) -> float:
+def _positive(text: str) -> float:
     value = float(text)
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a finite number, got {text}")
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"expected a positive finite number, got {text}")
     return value
+
+
+def _number(text: str) -> int:
+    """How many: also as 1e5."""
+    value = _positive(text)
+    if value < 1.0:
+        raise argparse.ArgumentTypeError(f"expected 1 or more, got {text}")
+    return int(value)
 
 
 def _demo(options: argparse.Namespace) -> None:
@@ -104,7 +112,7 @@ def _demo(options: argparse.Namespace) -> None:
     options.output.mkdir(parents=True, exist_ok=True)
     pictures = outer_solar_system(options.output, options.days, options.threads)
     print()
-    pictures += rutherford(options.output, int(options.events), options.threads)
+    pictures += rutherford(options.output, options.events, options.threads)
     _say(pictures)
 
 
@@ -112,14 +120,14 @@ def _pendulum(options: argparse.Namespace) -> None:
     from visviva.pendulum import pendulum
 
     options.output.mkdir(parents=True, exist_ok=True)
-    _say(pendulum(options.output, int(options.members), options.threads))
+    _say(pendulum(options.output, options.members, options.threads))
 
 
 def _geiger_marsden(options: argparse.Namespace) -> None:
     from visviva.geiger_marsden import geiger_marsden
 
     options.output.mkdir(parents=True, exist_ok=True)
-    _say(geiger_marsden(options.output, int(options.events), options.thickness, options.threads))
+    _say(geiger_marsden(options.output, options.events, options.thickness, options.threads))
 
 
 def _toutatis(options: argparse.Namespace) -> None:

@@ -237,7 +237,9 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
 
 
 def _virial(trajectory: Trajectory, closed: bool) -> float:
-    if not {"position", "velocity"} <= set(trajectory.recorded) or len(trajectory.t) < 2:
+    t = trajectory.t
+    # Over no time there is no mean.
+    if not {"position", "velocity"} <= set(trajectory.recorded) or len(t) < 2 or t[0] == t[-1]:
         return float("nan")
 
     def told(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64] | None) -> Any:
@@ -245,7 +247,7 @@ def _virial(trajectory: Trajectory, closed: bool) -> float:
 
     sums = by_era(trajectory, told)
     kinetic = by_era(trajectory, internal_motion)["kinetic_energy"] if closed else sums["kinetic_energy"]
-    weights = np.abs(np.diff(trajectory.t))
+    weights = np.abs(np.diff(t))
 
     def mean(values: NDArray[np.float64]) -> float:
         return fsum(weights * (values[1:] + values[:-1]) / 2.0) / fsum(weights)

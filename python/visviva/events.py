@@ -8,6 +8,10 @@ change no bit of a run; one that is ``terminal`` ends it.
 
 A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
 step and turns, it is followed down, so that two zeros in one step are found.
+
+The state at a terminal event is on the far side of the zero, by a rounding. A run that goes on from there is away from
+it and does not find it again; one whose velocity was turned round, to bounce, comes back through it at once, and finds
+it as a zero the other way. So give an event its direction if runs go on from it (`plane` has an example).
 """
 
 from __future__ import annotations
@@ -65,7 +69,8 @@ def distance(
     direction : {1, -1, 0}, optional
         -1 where they come nearer, 1 where they part again, 0 for both.
     terminal : bool or int, optional
-        Whether the run ends there, or with the zero of which number.
+        Whether the run ends there, or with the zero of which number. What is run on from there with another velocity
+        should have a `direction`: see `visviva.events`.
 
     Returns
     -------
@@ -133,6 +138,19 @@ def plane(
     >>> out = scene.run(t=20.0, events=[vv.events.plane([0, 0, 0], [0, 1, 0], body=1, direction=-1)])
     >>> bool(abs(out.events.position[:, 1, 1]).max() < 1e-12)
     True
+
+    A ball that bounces, by a run for each flight. It hits the floor on the way down: the way up, at the start of a
+    flight, is no event.
+
+    >>> floor = vv.events.plane([0, 0, 0], [0, 0, 1], direction=-1, terminal=True)
+    >>> ball = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 5.0]]), vv.UniformField([0.0, 0.0, -10.0]))
+    >>> for _ in range(3):
+    ...     hit = ball.run(t=ball.t0 + 10.0, events=[floor]).final
+    ...     print(f"{hit.t0:.9f}")
+    ...     ball = hit.with_state(velocity=-0.5 * hit.particles.velocity)
+    1.000000000
+    2.000000000
+    2.500000000
     """
     through, perpendicular = _point("point", point), _point("normal", normal)
     if not any(perpendicular):
@@ -319,7 +337,8 @@ def function(
     """Your own function passes zero.
 
     It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
-    times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them.
+    times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them; the
+    direction is that in time, also in a run backwards, where SciPy's is that along the run.
 
     In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,). An
     `expression` is better there where it is one: it is compiled, and no zero is missed between two looks.

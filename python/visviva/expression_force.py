@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from visviva import _core, _expression_table
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
     from visviva.typing import Formula, ParameterValues, SymbolicExpression
 
-__all__ = ["ExpressionForce", "formula_of", "parameter_names"]
+__all__ = ["ExpressionForce", "check_units", "formula_of", "parameter_names"]
 
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
@@ -97,10 +99,15 @@ def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
     if callable(force):
         check_call("force", force, ("position", "velocity", "t"), names)
-        return tuple((lambda *state, c=c, **own: _component(force(*state, **own), c)) for c in range(3))
+        return tuple(_one_of(force, c) for c in range(3))
     if isinstance(force, str) or not hasattr(force, "__len__") or len(force) != 3:
         raise InvalidInput("force", f"expected three components, or a function that gives them, got {force!r}")
     return tuple(force)
+
+
+def _one_of(force: Callable[..., Any], which: int) -> Callable[..., Any]:
+    # Without a name of its own among the arguments: those of parameters may be any.
+    return lambda *state, **own: _component(force(*state, **own), which)
 
 
 def _component(components: Any, which: int) -> Any:
@@ -124,6 +131,28 @@ def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) 
     known = [[sp.Symbol(name) for name in group] for group in (_PLACES, _VELOCITIES, names)]
     plain.pop(time._sympy_(), None)
     return Symbols(nodes, *known).node(argument, expression.xreplace(plain))
+
+
+def check_units(force: ExpressedForce) -> None:
+    """Refuse units of the expressions in which a force or a speed of 1 is none in those of the scene.
+
+    Raises
+    ------
+    InvalidInput
+        With the unit of force, mass · length / time², as it would be.
+    """
+    length, mass, time = np.float64(force.length), np.float64(force.mass), np.float64(force.time)
+    with np.errstate(all="ignore"):
+        # As the core has it: what overflows on the way is lost there, too.
+        unit = mass * length / (time * time)
+        others = np.array([unit, 1.0 / unit, length / time, time / length, 1.0 / length, 1.0 / time])
+    if not (np.isfinite(others).all() and (others >= np.finfo(np.float64).tiny).all()):
+        raise InvalidInput(
+            "length",
+            "expected units of length, mass and time in which forces, mass · length / time², and speeds of the "
+            f"expressions stay within float64, but 1.0 of a force becomes {float(unit)!r}; choose them nearer to the "
+            "scene",
+        )
 
 
 def parameter_names(force: ExpressedForce) -> tuple[str, ...]:

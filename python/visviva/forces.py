@@ -191,8 +191,17 @@ def _formula_of(force: Any) -> str:
     return formula_of(force)
 
 
+def _in_units_that_fit(force: Any) -> None:
+    Force.__post_init__(force)
+    from visviva.expression_force import check_units  # which needs this module
+
+    check_units(force)
+
+
 # What a class has beside what is declared.
-_FURTHER: dict[str, dict[str, Any]] = {"expressed_force": {"__repr__": _formula_of}}
+_FURTHER: dict[str, dict[str, Any]] = {
+    "expressed_force": {"__repr__": _formula_of, "__post_init__": _in_units_that_fit}
+}
 _BY_NAME = {
     entry["name"]: class_from_entry(entry, Force, __name__, _FURTHER.get(entry["name"], {})) for entry in _core.forces()
 }

@@ -216,7 +216,8 @@ class Particles(Shown):
         longitude_of_ascending_node : array_like, optional
             Ω, from x to the ascending node.
         argument_of_pericenter, longitude_of_pericenter : array_like, optional
-            ω, from the node to the pericenter along the motion, or ϖ = Ω + ω; ω = 0 if neither is given.
+            ω, from the node to the pericenter along the motion, or ϖ = Ω + ω (of retrograde orbits, too, where
+            REBOUND has Ω − ω); ω = 0 if neither is given.
         true_anomaly, eccentric_anomaly, mean_anomaly, mean_longitude, time_of_pericenter : array_like, optional
             Where the bodies are, by one of the five: the angle from the pericenter, inside the asymptotes of a
             hyperbola; E, H or tan(ν/2) of an ellipse, hyperbola or parabola; E − e sin E, e sinh H − H or

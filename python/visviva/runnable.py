@@ -78,7 +78,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
         record : str or sequence of str, optional
             Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
             ``angular_momentum``, ``center_of_mass``, ``kinetic_energy``, ``potential_energy``, ``virial``, and of rigid
-            bodies ``orientation`` and ``angular_velocity``. What is not asked for is not computed.
+            bodies ``orientation`` and ``angular_velocity``. What is not asked for is not computed. A recorded column
+            knows the integrator's states; one computed later, from positions and velocities, may differ in its last
+            bits.
         events : sequence, optional
             Of `visviva.events`, or functions ``f(t, position, velocity)``: their zeros on the way come back in
             ``out.events``. They change no bit of the run. A terminal one ends it: rows, ``final`` and the table end

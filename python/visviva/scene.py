@@ -311,9 +311,14 @@ class Scene(Runnable[Trajectory], Framed):
 
         Every method of the registry is tried on as much of the run as a reference does in a moment, with ever smaller
         steps until it holds what the stretch may be off, if over the whole span its error grows as theory says: the
-        energy of a symplectic method not at all and its phase linearly, any other's linearly and quadratically. That
-        is a guess where the motion is chaotic or has its hardest part later; steps are equal in such a run, or follow
-        the tolerance. It takes some seconds.
+        energy of a symplectic method not at all and its phase linearly, any other's linearly and quadratically.
+
+        A first part tells nothing of an encounter that comes after it, nor of chaos that has not begun. So the fastest
+        of what was found are then run over the whole span, and made tighter until they hold there, if a reference does
+        that in about a second. Of a longer run (`Advice.tried` is the part that every method did) the answer is that
+        of its first part: compare two runs, or try the span in which its hardest part is. What may be off is told by
+        the two tightest runs of the reference: where they differ by more than what is asked for, no method is named.
+        It takes some seconds.
 
         Parameters
         ----------
@@ -336,7 +341,7 @@ class Scene(Runnable[Trajectory], Framed):
             For an accuracy that is not between 5e-13 and 1, another word for `of`, times that `run` refuses, or rigid
             bodies: trials know points only.
         visviva.ConvergenceError
-            If no method holds it, or a trial ends early.
+            If no method holds it, if no run tells whether one does, or a trial ends early.
 
         References
         ----------

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import visviva as vv
+
 PAGE = Path(__file__).parents[2] / "docs" / "coming-from-rebound.md"
 PAIRS = re.findall(
     r"\n## ([^\n]*)\n[^#]*?```py\n(.*?)```\n\n```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL
@@ -48,6 +50,35 @@ def test_there_are_the_quick_start_and_ten_examples() -> None:
 @pytest.mark.parametrize("title", [title for title, _, _ in PAIRS])
 def test_the_translation_comes_to_their_answer(title: str, ours: dict[str, Any]) -> None:
     agree(title, ours[title], ANSWERS[title])
+
+
+@pytest.mark.skipif(find_spec("rebound") is None, reason="REBOUND is not installed")
+@pytest.mark.parametrize("inclination", [0.4, 2.2])
+def test_longitudes_of_retrograde_orbits_are_theirs_as_the_page_says(inclination: float) -> None:
+    rebound = pytest.importorskip("rebound")
+    sim = rebound.Simulation()
+    sim.add(m=1.0)
+    sim.add(m=0.0, a=1.0, e=0.7, inc=inclination, Omega=0.5, pomega=1.0, f=0.3)
+    theirs = sim.particles[1].orbit(primary=sim.particles[0])
+    sign = 1.0 if inclination < np.pi / 2 else -1.0
+    bodies = vv.Particles.from_elements(
+        1.0,
+        0.0,
+        G=1.0,
+        semi_major_axis=1.0,
+        eccentricity=0.7,
+        inclination=inclination,
+        longitude_of_ascending_node=0.5,
+        argument_of_pericenter=sign * (1.0 - 0.5),
+        true_anomaly=0.3,
+    )
+    np.testing.assert_allclose(bodies.position[1], sim.particles[1].xyz, rtol=0, atol=1e-14)
+    ours = vv.Scene(bodies, vv.Gravity(G=1.0)).elements(1)
+    along = sign * ours.argument_of_pericenter, sign * ours.mean_anomaly
+    assert abs(ours.node + along[0] - theirs.pomega) < 1e-14
+    assert abs((ours.node + sum(along) - theirs.l + np.pi) % (2.0 * np.pi) - np.pi) < 1e-14
+    words = " ".join(PAGE.read_text(encoding="utf-8").split())
+    assert "REBOUND counts `pomega` as Ω − ω and `l` as Ω − ω − M there" in words
 
 
 @pytest.mark.skipif(find_spec("rebound") is None, reason="REBOUND is not installed")

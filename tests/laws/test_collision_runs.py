@@ -43,6 +43,17 @@ def test_what_mergers_leave_goes_on() -> None:
         left.run(1.0)
 
 
+def test_what_is_a_part_of_another_has_no_energy_of_its_own() -> None:
+    """As files of before mergers beside such forces were refused have it."""
+    left = vv.Particles([2.0, 0.0, 1.0], [[1, 0, 0], [1, 0, 0], [3, 0, 0]], [[0, 1, 0]] * 3, radius=[0.5, 0.0, 0.5])
+    few = left[[0, 2]]
+    for force in (vv.Harmonic(1.0), vv.PairPotential(vv.potentials.Morse(1.0, 1.0, 1.5)), vv.Gravity(1.0)):
+        found, wanted = vv.Scene(left, force).invariants(), vv.Scene(few, force).invariants()
+        assert found.energy == wanted.energy
+        assert found.potential_energy == wanted.potential_energy
+        np.testing.assert_array_equal(found.torque, wanted.torque)
+
+
 def test_elements_know_what_has_merged() -> None:
     # A comet falls into the star, and two planets meet.
     places = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, -0.5, 0.0]]

@@ -5,6 +5,7 @@ of the phase.
 """
 
 import numpy as np
+import pytest
 
 import visviva as vv
 
@@ -117,3 +118,32 @@ def test_two_gravities_are_one_of_their_sum() -> None:
     found = vv.Scene(bodies, vv.Gravity(1.0), vv.Gravity(2.0)).elements(1)
     assert np.isclose(found.semi_major_axis, 2.0, rtol=1e-14, atol=0)
     assert found.mu == 4.5
+
+
+def test_in_a_turning_frame_orbits_are_those_of_an_inertial_one() -> None:
+    """The same ellipse, seen turning: its size and shape stay, its node turns back; of copies with their own frames."""
+    start = vv.Particles.from_elements(1.0, 1e-3, G=1.0, semi_major_axis=1.0, eccentricity=0.3, inclination=0.4)
+    times, rates = np.linspace(0.0, 3.0, 4), np.array([0.5, 0.0, -1.3])
+    frames = [vv.RotatingFrame([0, 0, rate], center=[0.2, 0.1, 0.0]) for rate in rates]
+    scenes = []
+    for frame in frames:
+        seen = start.velocity - np.cross(frame.omega, start.position - np.array(frame.center))
+        scenes.append(vv.Scene(start._changed(velocity=seen), vv.Gravity(1.0), frame))
+    still = vv.Scene(start, vv.Gravity(1.0)).elements(1)
+    copies = scenes[0].ensemble(
+        velocity=[scene.particles.velocity for scene in scenes],
+        parameters={"RotatingFrame": {"omega": [frame.omega for frame in frames]}},
+    )
+    many = copies.run(t=times, rtol=1e-12).elements(1)
+    for copy, (scene, rate) in enumerate(zip(scenes, rates, strict=True)):
+        now = scene.elements(1)
+        alone = scene.run(t=times, rtol=1e-12).elements(1)
+        for found in (now, alone):
+            np.testing.assert_allclose(found.semi_major_axis, still.semi_major_axis, rtol=1e-10)
+            np.testing.assert_allclose(found.eccentricity, 0.3, rtol=1e-10)
+            np.testing.assert_allclose(found.inclination, 0.4, rtol=1e-10)
+        turned = alone.node - still.node + rate * times
+        np.testing.assert_allclose(np.exp(1j * turned), 1.0, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(many.eccentricity[copy], alone.eccentricity, rtol=1e-12)
+    with pytest.raises(vv.InvalidInput, match="one RotatingFrame"):
+        vv.Scene(start, vv.Gravity(1.0), *frames).elements(1)

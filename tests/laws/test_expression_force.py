@@ -120,6 +120,25 @@ def test_a_shifted_turned_and_rescaled_force_is_the_same() -> None:
     assert np.abs(back - wanted.position[-1]).max() < 4e-14
 
 
+@pytest.mark.parametrize(
+    "units",
+    [
+        {"length": 1e-100, "mass": 1e-100, "time": 1e100},  # no force is left
+        {"length": 1e100, "mass": 1e100, "time": 1e-100},  # nor is it a number
+        {"time": 1e-200},  # whose square is none
+        {"length": 1e200, "time": 1e-150, "mass": 1e-250},  # the force is, a speed is not
+    ],
+)
+def test_units_in_which_nothing_is_left_are_refused(units: dict[str, float]) -> None:
+    scene = vv.Scene(bodies(2), vv.ExpressionForce(potential=x**2 / 2))
+    with pytest.raises(vv.InvalidInput, match=r"^length: expected units .* within float64"):
+        scene.forces[0].rescaled(**units)
+    # What differs as much and fits is taken.
+    near = scene.rescaled(length=1e-100, mass=1e-100, time=1e-100)
+    here = scene.run(t=1.0, rtol=1e-12).position[-1]
+    assert np.abs(near.run(t=1e-100, rtol=1e-12).position[-1] * 1e100 - here).max() < 1e-9
+
+
 def test_the_bits_are_the_same_alone_in_copies_and_with_threads() -> None:
     force = vv.ExpressionForce(force=lambda r, v, t: (np.sin(r[1]) - v[0], np.cos(t) * r[0], -(r[2] ** 3)))
     scene = vv.Scene(bodies(3), force, vv.Gravity(G=1.0, softening=0.1))
@@ -228,6 +247,20 @@ def test_copies_with_parameters_of_their_own_move_as_alone(count: int, method: d
         assert np.array_equal(out.energy[copy], alone.energy)
 
 
+@pytest.mark.parametrize("name", ["c", "state", "own", "which", "force", "components"])
+def test_a_parameter_may_have_any_name(name: str) -> None:
+    drag = vv.ExpressionForce(
+        force=lambda r, v, t, **own: tuple(-own[name] * component for component in v), parameters={name: 0.5}
+    )
+    alone = eval(f"lambda r, v, t, {name}: (-{name} * v[0], -{name} * v[1], -{name} * v[2])")
+    of_name = vv.ExpressionForce(force=alone, parameters={name: 0.5})
+    for force in (drag, of_name):
+        found = vv.Scene(bodies(2), force).acceleration()
+        np.testing.assert_allclose(found, -0.5 * bodies(2).velocity / bodies(2).mass[:, None], rtol=1e-15)
+    with_default = vv.ExpressionForce(force=lambda r, v, t, c=2.0: (-c * v[0], -c * v[1], -c * v[2]))
+    assert vv.Scene(bodies(2), with_default).acceleration().any()
+
+
 def test_parameters_of_copies_are_asked_by_name() -> None:
     trap = vv.ExpressionForce(potential=k * x**2, parameters={k: 2.0})
     scene = vv.Scene(bodies(2), trap)
@@ -238,6 +271,11 @@ def test_parameters_of_copies_are_asked_by_name() -> None:
     ):
         with pytest.raises(vv.InvalidInput, match=message):
             scene.ensemble(parameters={trap: wrong})
+    # By the name under which it was made, and by that of what it became.
+    by_name = [scene.ensemble(parameters={name: {"k": [1.0, 3.0]}}) for name in ("ExpressionForce", "ExpressedForce")]
+    assert by_name[0].forces == by_name[1].forces == scene.ensemble(parameters={trap: {"k": [1.0, 3.0]}}).forces
+    with pytest.raises(vv.InvalidInput, match="several like that"):
+        vv.Scene(bodies(2), trap, trap).ensemble(parameters={"ExpressionForce": {"k": [1.0]}})
     assert (
         pickle.loads(pickle.dumps(scene.ensemble(parameters={trap: {"k": [1.0, 3.0]}}))).forces[1][0].values[0] == 3.0
     )

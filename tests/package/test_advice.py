@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva import _advice_trial
 
 
 def off(problem: vv.problems.Problem, advice: vv.Advice) -> float:
@@ -50,6 +51,35 @@ def test_what_loses_energy_is_measured_against_what_it_should_lose() -> None:
         found = scene.run(end, record="energy", **advice.how).energy[-1]
         # An accuracy of 1e-8 was asked for; measured 2e-9.
         assert abs(found / exact - 1.0) < 1e-8
+
+
+def test_what_comes_after_the_stretch_is_tried_where_that_takes_a_moment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A flyby at half of the span, of which a stretch of a few steps knows nothing."""
+    monkeypatch.setattr(_advice_trial, "_SECONDS", 0.0)
+    bodies = vv.Particles(
+        [1, 1, 1e-3], [[0, 0, 0], [1, 0, 0], [-60, 0.05, 0]], [[0, -0.7, 0], [0, 0.7, 0], [1.0, 0, 0]]
+    )
+    scene = vv.Scene(bodies, vv.Gravity(1.0))
+    advice = scene.advise(t=100.0, accuracy=1e-6, of="position")
+    assert advice.tried < 0.1
+    exact = scene.run(t=100.0, method="verner98", rtol=3e-14).position[-1]
+    for option in advice.options[:8]:
+        off = np.abs(scene.run(t=100.0, **option.how).position[-1] - exact).max() / 40.0
+        assert off < 1e-6, (option, off)
+
+
+def test_a_chaotic_motion_is_judged_against_the_surest_reference() -> None:
+    """Of the tightest runs of DOP853 nothing can be told to a thousandth here, of those by Taylor series it can."""
+    problem = vv.problems.pythagorean()
+    scene = problem.scene
+    exact = next(known.position for known in problem.references if known.t == 63.0)
+    advice = scene.advise(t=63.0, accuracy=1e-3, of="position")
+    size = np.abs(exact).max()
+    for option in advice.options:
+        assert problem.error(scene.run(t=63.0, **option.how)) < 3e-3 * size, option
+    # Beyond what rounding leaves nobody is advised.
+    with pytest.raises(vv.ConvergenceError, match=r"no run tells position to 1e-12 over the whole of it.*differ by"):
+        scene.advise(t=63.0, accuracy=1e-12, of="position")
 
 
 def test_a_closed_form_needs_no_method() -> None:

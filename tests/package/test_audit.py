@@ -147,6 +147,50 @@ def test_what_acts_between_bodies_is_refused_however_short_it_reaches(force: vv.
             asked()
 
 
+@pytest.mark.parametrize(
+    ("force", "looks"),
+    [
+        (vv.LinearDrag(1.0), "velocities"),
+        (vv.QuadraticDrag(1.0), "velocities"),
+        (vv.Drag(1.0, 0.1, 0.1), "velocities"),
+        (vv.UniformMagneticField([0.0, 0.0, 1.0]), "velocities"),
+        (vv.RotatingFrame([0.0, 0.0, 1.0]), "velocities"),
+        (vv.ExpressionForce(force=lambda r, v, t: (-v[0], -r[1], -r[2])), "velocities"),
+        (vv.DrivenForce([1.0, 0.0, 0.0], 2.0), "the time"),
+        (vv.ExpressionForce(potential=lambda r, v, t: np.cos(t) * r[0] ** 2), "the time"),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_what_depends_on_the_motion_is_not_called_conservative(force: vv.forces.Force, looks: str) -> None:
+    """Of a body at rest a drag does nothing, and nothing has no curl."""
+    for asked in (
+        lambda: vv.audit.curl(force, [[1.0, 2.0, 3.0]]),
+        lambda: vv.audit.work(force, [[0.0, 0, 0], [1.0, 0, 0]]),
+    ):
+        with pytest.raises(vv.InvalidInput, match=rf"^force: .*looks at {looks}.*work_along"):
+            asked()
+    # As a field at rest and at one time, which is then what was asked for.
+    at_rest = vv.audit.field(force, t0=0.5)
+    assert vv.audit.curl(at_rest, [[1.0, 2.0, 3.0]]).value.shape == (1, 3)
+
+
+@pytest.mark.parametrize("width", [1e-2, 2e-3, 1e-3])
+def test_what_is_felt_for_a_short_part_of_a_path_does_work(width: float) -> None:
+    for middle in np.linspace(0.1, 0.9, 9) + 0.0333:
+
+        def bump(r: Points, middle: float = middle) -> Points:
+            return np.outer(np.exp(-(((r[:, 0] - middle) / width) ** 2)), [1.0, 2.0, 0.0])
+
+        work = vv.audit.work(bump, [[0.0, 0, 0], [1.0, 0, 0]], rtol=1e-10)
+        assert work == pytest.approx(np.sqrt(np.pi) * width, rel=1e-8)
+
+
+def test_no_work_is_done_in_no_time() -> None:
+    scene = vv.Scene(vv.Particles([1.0, 2.0], [[1.0, 0, 0], [0, 1.0, 0]], [[0, 1.0, 0]] * 2), vv.Harmonic(1.0))
+    assert vv.audit.work_along(scene.run(t=[0.0]), scene.forces[0]).tolist() == [[0.0, 0.0]]
+    assert vv.audit.work_along(scene.run(t=[0.0, 0.0]), scene.forces[0]).tolist() == [[0.0, 0.0]] * 2
+
+
 def test_refusals() -> None:
     with pytest.raises(vv.InvalidInput, match="acts between bodies"):
         vv.audit.field(vv.Gravity(1.0))

@@ -74,10 +74,24 @@ def test_the_impulse_is_the_momentum_that_a_drive_gives() -> None:
     np.testing.assert_allclose(pulse, np.sqrt(np.pi) * np.array([1.0, 0.0, -2.0]), rtol=0, atol=1e-12)
     np.testing.assert_allclose(vv.audit.impulse(lambda t: np.ones((len(t), 3)), (2.0, -1.0)), -3.0, rtol=1e-14)
     for jump in (0.123, 0.5003, 0.25, 0.9):
-        with pytest.raises(vv.ConvergenceError):
+        with pytest.raises(vv.ConvergenceError, match=r"the impulse does not settle .*: the force jumps"):
             vv.audit.impulse(lambda t, jump=jump: np.sign(t - jump)[:, None] * np.ones(3), (0.0, 1.0))
     with pytest.raises(vv.InvalidInput, match="force"):
         vv.audit.impulse(lambda t: np.ones(len(t)), (0.0, 1.0))
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 3e-4, 1e-4, 3e-5])
+@pytest.mark.parametrize("start", [0.0, 1e5])
+def test_a_short_blow_is_found(width: float, start: float) -> None:
+    for middle in np.linspace(0.1, 0.9, 9) + 0.0333:
+
+        def blow(t: np.ndarray, middle: float = middle) -> np.ndarray:
+            return np.outer(np.exp(-(((t - start - middle) / width) ** 2)), [1.0, 0.0, -2.0])
+
+        found = vv.audit.impulse(blow, (start, start + 1.0), rtol=1e-12 if start == 0.0 else 1e-6)
+        wanted = np.sqrt(np.pi) * width * np.array([1.0, 0.0, -2.0])
+        # The times themselves are rounded, far from 0.
+        np.testing.assert_allclose(found, wanted, rtol=1e-11 if start == 0.0 else 1e-5)
 
 
 @pytest.mark.parametrize(
@@ -123,3 +137,10 @@ def test_a_line_that_turns_is_rigid_and_a_spring_is_not() -> None:
     for pairs in ([(0, 0)], [(0, 2)], [(-1, 0)]):
         with pytest.raises(vv.InvalidInput, match="two of the bodies 0 to 1"):
             vv.audit.rigidity(spring, pairs)
+
+
+def test_methods_are_judged_by_bodies() -> None:
+    nobody = vv.Scene(vv.Particles(np.zeros(0), np.zeros((0, 3))), vv.Gravity(1.0))
+    for asked in (vv.audit.symplecticity, vv.audit.reversal, vv.audit.order):
+        with pytest.raises(vv.InvalidInput, match=r"^scene: expected bodies"):
+            asked(nobody, 1.0, method="leapfrog", dt=0.1)  # type: ignore[operator]

@@ -45,7 +45,17 @@ def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFi
     assert isinstance(vv.load(tmp_path / "outer_solar_system.npz"), vv.Trajectory)
 
 
-@pytest.mark.parametrize("given", [["--events", "inf"], ["--days", "nan"], ["--days", "soon"]])
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["--events", "inf"],
+        ["--days", "nan"],
+        ["--days", "soon"],
+        ["--days", "-5"],
+        ["--days", "0"],
+        ["--events", "0.5"],
+    ],
+)
 def test_a_number_that_is_none_is_refused(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["demo", *given])

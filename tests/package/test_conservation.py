@@ -158,3 +158,14 @@ def test_what_collisions_take_is_not_an_error_of_the_run(collisions: str, restit
     assert table.momentum.max < 1e-15
     assert table.angular_momentum.conserved == (collisions == "bounce")
     assert ("energy" in str(table) and "not conserved by these forces and collisions" in str(table)) != elastic
+
+
+@pytest.mark.parametrize("times", [0.0, [0.0, 0.0], [1.0, 1.0]])
+def test_over_no_time_there_is_no_mean_of_the_virial(times: float | list[float]) -> None:
+    scene = vv.problems.figure_eight().scene
+    copies = scene.ensemble(position=scene.particles.position[None])
+    for out in (scene.run(t=times), copies.run(t=times)[0]):
+        kept = out.conservation()
+        assert np.isnan(kept.virial)
+        assert kept.energy.max < 1e-10
+        assert "virial" in str(kept)

@@ -81,7 +81,8 @@ class Elements(OfOrbits, Shown):
     longitude_of_ascending_node : ndarray
         `node`.
     longitude_of_pericenter, mean_longitude : ndarray
-        ϖ = node + argument of pericenter, and ϖ + mean anomaly; both may be beyond π.
+        ϖ = node + argument of pericenter, and ϖ + mean anomaly; both may be beyond π. So for every inclination;
+        REBOUND has Ω − ω, and Ω − ω − M, of orbits that are retrograde (inclination above π/2).
 
     `to_xarray` and `to_pandas` have a row for each orbit: of a run's elements under its times and the names of the
     bodies (and the number of the copy), of others under their place in the arrays.
