@@ -126,6 +126,7 @@ def test_lines_of_a_portrait_have_as_many_points_between_them_and_separatrices_t
         ((-0.5, 8.0), (0.5, 8.0), []),
         ((-0.5, 8.0), (-8.0, -0.5), []),
         ((0.0, 2 * np.pi), (0.0, 8.0), [[0.0, 0.0], [2 * np.pi, 0.0]]),
+        ((-1.0, 1.0), (-8.0, 0.0), [[0.0, 0.0]]),
     ],
 )
 def test_centers_are_shown_where_the_portrait_reaches(

@@ -1,5 +1,8 @@
 """Beams whose projectiles differ in energy, direction and place: their laws, closure, and that nothing asked for beside
-changes an event."""
+changes an event.
+
+Bounds: a χ² that a right simulation leaves but once in fifty thousand draws, of one seed.
+"""
 
 import os
 import subprocess

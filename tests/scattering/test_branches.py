@@ -1,4 +1,8 @@
-"""Branches, rainbows, glories, orbits and the cross sections they make: published digits, sum rules, closed forms."""
+"""Branches, rainbows, glories, orbits and the cross sections they make: published digits, sum rules, closed forms.
+
+Bounds: published numbers to the last digit that is printed; closed forms to the roundings of an inverse of the
+deflection function and of quadratures over it, 1e-14 and, by a rule of sixty points of the test's own, 5e-14.
+"""
 
 from __future__ import annotations
 
@@ -60,7 +64,7 @@ def test_the_last_orbit_of_lennard_jones() -> None:
     b0 = r0 * np.sqrt(1.8)
     # Of an extremum half the digits of r are known, and all of b.
     assert orbit.radius == pytest.approx(r0, abs=1e-7)
-    assert orbit.impact_parameter == pytest.approx(b0, rel=4e-16)
+    assert orbit.impact_parameter == pytest.approx(b0, rel=4e-16, abs=0)
     assert not orbit.captures
     steps = [
         np.diff(s.deflection_angle(LENNARD_JONES, energy=0.8, impact_parameter=b0 * (1.0 + side * offsets)))[0]
@@ -68,7 +72,7 @@ def test_the_last_orbit_of_lennard_jones() -> None:
         for offsets in [np.array([1e-9, 1e-11])]
     ]
     # What is left out falls as |b/b₀ − 1|^(1/3): 1e-3 of the whole.
-    assert steps[0] / steps[1] == pytest.approx(np.sqrt(3.0), rel=4e-3)
+    assert steps[0] / steps[1] == pytest.approx(np.sqrt(3.0), rel=4e-3, abs=0)
     glories = s.glories(LENNARD_JONES, energy=0.8)
     assert len(glories) > 50
     found = s.deflect(LENNARD_JONES, energy=0.8, impact_parameter=[mark.impact_parameter for mark in glories])
@@ -101,20 +105,20 @@ def test_capture() -> None:
 def test_transport_of_lennard_jones(energy: float, first: float, second: float, digits: float) -> None:
     momentum = s.transport_cross_section(LENNARD_JONES, energy=energy) / np.pi
     viscosity = s.transport_cross_section(LENNARD_JONES, energy=energy, order=2) / (np.pi * 2.0 / 3.0)
-    assert (momentum, viscosity) == (pytest.approx(first, rel=digits), pytest.approx(second, rel=digits))
+    assert (momentum, viscosity) == (pytest.approx(first, rel=digits, abs=0), pytest.approx(second, rel=digits, abs=0))
 
 
 def test_transport_of_closed_forms() -> None:
     """Hard spheres π R² and 2π R²/3; of Maxwell's V = C/r⁴ the ratio A₂/A₁, and Q as E^(−1/2)."""
     sphere = V.HardSphere(2.0)
     found = [s.transport_cross_section(sphere, energy=3.0, order=order) for order in (1, 2)]
-    np.testing.assert_allclose(found, [4.0 * np.pi, 8.0 * np.pi / 3.0], rtol=1e-12)
+    np.testing.assert_allclose(found, [4.0 * np.pi, 8.0 * np.pi / 3.0], rtol=1e-14)
     ratio = s.transport_cross_section(V.PowerLaw(1.0, 4), energy=1.0, order=2) / s.transport_cross_section(
         V.PowerLaw(1.0, 4), energy=1.0
     )
-    assert ratio == pytest.approx(0.436195094104808 / 0.421940162075613, rel=1e-10)
+    assert ratio == pytest.approx(0.436195094104808 / 0.421940162075613, rel=1e-14, abs=0)
     scaled = s.transport_cross_section(V.PowerLaw(1.0, 4), energy=[1.0, 16.0])
-    assert scaled[1] == pytest.approx(scaled[0] / 4.0, rel=1e-12)
+    assert scaled[1] == pytest.approx(scaled[0] / 4.0, rel=1e-14, abs=0)
 
 
 def test_what_rutherford_has_is_had_by_any() -> None:
@@ -124,9 +128,9 @@ def test_what_rutherford_has_is_had_by_any() -> None:
         angles = angle[:3] / 2.0 if frame == "recoil" or ratio == 1.0 else angle
         ours = s.cross_section(coulomb, energy=1.3, angle=angles, frame=frame, mass_ratio=ratio)
         known = s.rutherford_cross_section(coulomb, energy=1.3, angle=angles, frame=frame, mass_ratio=ratio)
-        np.testing.assert_allclose(ours, known, rtol=1e-12)
+        np.testing.assert_allclose(ours, known, rtol=1e-14)
     b = s.impact_parameter(coulomb, energy=1.3, angle=angle[:4])[:, 0]
-    np.testing.assert_allclose(b, s.rutherford_impact_parameter(coulomb, energy=1.3, angle=angle[:4]), rtol=1e-13)
+    np.testing.assert_allclose(b, s.rutherford_impact_parameter(coulomb, energy=1.3, angle=angle[:4]), rtol=1e-14)
 
 
 @pytest.mark.parametrize("energy", [0.5, 1.0, 10.0])
@@ -149,9 +153,9 @@ def test_the_sum_rule() -> None:
     angle = np.exp(np.log(least) + (np.log(np.pi) - np.log(least)) * (x + 1.0) / 2.0)
     sigma = s.cross_section(yukawa, energy=1.0, angle=angle)
     area = np.sum(weight * 2.0 * np.pi * np.sin(angle) * sigma * angle) * np.log(np.pi / least) / 2.0
-    assert area == pytest.approx(9.0 * np.pi, rel=1e-10)
-    assert s.total_cross_section(yukawa, energy=1.0, theta_min=least) == pytest.approx(9.0 * np.pi, rel=1e-12)
-    assert s.total_cross_section(V.HardSphere(2.0), energy=1.0) == pytest.approx(4.0 * np.pi, rel=1e-15)
+    assert area == pytest.approx(9.0 * np.pi, rel=5e-14, abs=0)
+    assert s.total_cross_section(yukawa, energy=1.0, theta_min=least) == pytest.approx(9.0 * np.pi, rel=1e-14, abs=0)
+    assert s.total_cross_section(V.HardSphere(2.0), energy=1.0) == pytest.approx(4.0 * np.pi, rel=1e-15, abs=0)
 
 
 def test_collision_integrals_of_hard_spheres() -> None:
@@ -213,7 +217,8 @@ def test_grazing_a_wall(angle: float) -> None:
     sphere = V.HardSphere(2.0)
     # R − b has two digits where the outermost angle is sampled, from which the smaller ones are told.
     off = 1e-2 if angle < 1e-6 else 1e-7
-    assert s.cross_section(sphere, energy=1.0, angle=angle) == pytest.approx(1.0, rel=off)
+    assert s.cross_section(sphere, energy=1.0, angle=angle) == pytest.approx(1.0, rel=off, abs=0)
     if angle > 0.0:
         found = s.impact_parameter(sphere, energy=1.0, angle=angle)
-        assert found == pytest.approx([2.0 * np.cos(angle / 2.0)], rel=1e-15)
+        # At 1e-7 it is R, of which R − b = 2.5e-15 is beyond its digits there.
+        assert found == pytest.approx([2.0 * np.cos(angle / 2.0)], rel=1e-15, abs=4e-15)

@@ -1,4 +1,7 @@
-"""How far off a deflection is: by no more than was asked for, or than it says itself."""
+"""How far off a deflection is: by no more than was asked for, or than it says itself.
+
+Bounds: `tolerance` of each case is what the deflection says of its own error.
+"""
 
 from __future__ import annotations
 

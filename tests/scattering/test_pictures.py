@@ -1,4 +1,7 @@
-"""Pictures of scattering, by what is drawn: lines where there are motions, breaks where the function has them."""
+"""Pictures of scattering, by what is drawn: lines where there are motions, breaks where the function has them.
+
+Bounds: what is drawn is the number itself, in degrees: some roundings.
+"""
 
 from itertools import pairwise
 from typing import Any

@@ -1,4 +1,7 @@
-"""Panels of what counts leave beside theory: how many standard deviations, where, and in whose axes."""
+"""Panels of what counts leave beside theory: how many standard deviations, where, and in whose axes.
+
+Bounds: what is drawn is the number itself, in other units: some roundings.
+"""
 
 from typing import Any
 
@@ -27,9 +30,9 @@ def test_what_is_left_is_in_standard_deviations_of_what_is_expected() -> None:
     expected = TALLY.expected()
     there = expected >= 1.0
     x, left = marked(lower)
-    assert x == pytest.approx(np.degrees(0.5 * (TALLY.edges[1:] + TALLY.edges[:-1]))[there])
+    assert x == pytest.approx(np.degrees(0.5 * (TALLY.edges[1:] + TALLY.edges[:-1]))[there], rel=1e-14, abs=0)
     sigma = np.sqrt(expected * (1.0 - expected / TALLY.n_events))[there]
-    assert left * sigma == pytest.approx((TALLY.counts - expected)[there])
+    assert left * sigma == pytest.approx((TALLY.counts - expected)[there], rel=1e-14, abs=0)
     # Of a simulation that is right a third is outside of the band, which is one wide to each side, and none at 5.
     assert 0.1 < (np.abs(left) > 1.0).mean() < 0.6
     assert np.abs(left).max() < 5.0
@@ -67,7 +70,9 @@ def test_of_weighted_events() -> None:
     )["cm_angle"]  # fmt: skip
     there = few.variances() > 0.0
     _, left = marked(few.plot().figure.axes[1])
-    assert left * np.sqrt(few.variances()[there]) == pytest.approx((few.values() - few.expected())[there])
+    assert left * np.sqrt(few.variances()[there]) == pytest.approx(
+        (few.values() - few.expected())[there], rel=1e-6, abs=0
+    )
 
 
 def test_where_nothing_is_expected_there_is_no_panel() -> None:
@@ -106,7 +111,7 @@ def test_a_foil_draws_each_tally_where_it_is_told() -> None:
     tally = out["stopped_depth"]
     assert tally.plot(ax=own) is own
     [steps] = own.patches
-    assert steps.get_data().values == pytest.approx(tally.fraction().value)  # type: ignore[attr-defined]
+    assert steps.get_data().values == pytest.approx(tally.fraction().value, rel=1e-14, abs=0)  # type: ignore[attr-defined]
     low, high = own.get_xlim()
     counted = np.flatnonzero(tally.counts)
     assert low <= tally.edges[counted[0]] < tally.edges[counted[-1] + 1] <= high
