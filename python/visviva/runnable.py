@@ -93,8 +93,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
             massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
             ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
             anew after it. All bodies are on the same steps, no closed form is used while two may touch, and
-            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused. Those that bounce
-            and come to rest on each other end the run, with `Status.RESTING`.
+            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused, and so are
+            collisions where no body has a radius. Those that bounce and come to rest on each other end the run, with
+            `Status.RESTING`.
         restitution : float, optional
             The part of their speed along the line of centers with which spheres part that bounce, from 0 to 1, the
             default.

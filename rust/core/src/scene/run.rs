@@ -152,7 +152,7 @@ impl Part<'_> {
 /// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
-    match collisions::wanted(scene, request) {
+    match collisions::wanted(scene, request)? {
         Some(rule) => collisions::run(scene, request, rule, ticker),
         None => run_through(scene, request, ticker),
     }
