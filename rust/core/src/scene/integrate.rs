@@ -17,6 +17,7 @@ use super::columns::Writer;
 use super::continuation::Continuation;
 use super::plan::Plan;
 use super::request::AbsoluteTolerances;
+use super::events::Known;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::numerics::lanes::WIDTH;
@@ -29,6 +30,11 @@ const UNITS_PER_CHUNK: usize = 128;
 
 /// What all units of a run share.
 pub struct Job<'a> {
+/// Tolerances that continuous extensions are off at most within a step, and series. Of circles, the velocity along the radius
+/// was seen to reach 2.6 of them by `tsitouras54` and `dormand_prince54`, and 0.001 by `taylor`.
+const OF_EXTENSIONS: f64 = 2.0;
+const OF_SERIES: f64 = 1.0 / 256.0;
+
     /// The scene.
     pub scene: &'a Scene,
     /// Its plan.
@@ -66,6 +72,19 @@ impl Job<'_> {
 
     /// The time from the start of the scene to that of the run, in the plan's units.
     fn begun(&self) -> f64 {
+    /// How well a state within a step is known: to some tolerances, or to rounding where steps choose no error.
+    fn known(&self) -> Known {
+        let tolerances = match self.plan.method.scheme {
+            Scheme::Embedded(_) => OF_EXTENSIONS,
+            Scheme::Taylor(_) => OF_SERIES,
+            _ => 0.0,
+        };
+        let largest =
+            |each: Option<&[f64]>| each.into_iter().flatten().fold(0.0, |most: f64, &x| most.max(x));
+        let absolute = self.atol.map_or([0.0; 2], |atol| atol.kinds().map(largest));
+        Known { relative: tolerances * self.rtol, absolute: absolute.map(|atol| tolerances * atol) }
+    }
+
         scale(self.plan.dt.unwrap_or(0.0), -self.plan.units.time) * self.plan.from as f64
     }
 
