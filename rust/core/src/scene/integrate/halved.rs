@@ -17,8 +17,8 @@ use crate::ode::state::State;
 use crate::ode::stepper::stepper;
 use crate::parallel::Ticker;
 
-/// A velocity that is off by this part of itself after one step tells nothing. An oscillation with nine steps to a period is
-/// told of by Euler's method, one with three by `rk4`.
+/// A velocity that is off by this part of itself after one step tells nothing. Oscillations come to that with seven steps to
+/// a period by Euler's method, and with three by `rk4`; decays with 0.9 and with 2 times of decay to a step.
 const TOLERATED: f64 = 0.2;
 
 /// What a body moves in a step, as a part of its place, may be the rounding of forces that cancel below this.

@@ -125,8 +125,7 @@ pub(super) fn too_long(
 }
 
 /// The turn of a charge in magnetic fields with the fewest steps, for a method that turns velocities exactly: no energy
-/// knows that bodies are carried past their circles. Whatever the fields are otherwise, what one of them turns is turned
-/// about their sum.
+/// knows that bodies are carried past their circles. Fields add.
 fn gyration_too_long(scene: &Scene, method: &Method, dt: f64) -> Option<TooLong> {
     if !matches!(method.scheme, Scheme::Boris(_)) {
         return None;
