@@ -30,6 +30,7 @@ _OF_POINTS = (
     "an adaptive method (verner98)",
     "an adaptive method (verner98), which finds the steps that close bodies take",
 )
+_OF_STEPS = ("an adaptive method (verner98)",) * 2
 _OF_RIGID_BODIES = ("leaving dt out, for steps that follow rtol",) * 2
 """What may be tried beside a shorter step: where it nearly does, and where it does nothing of the kind."""
 
@@ -47,9 +48,10 @@ def _callers_inside() -> int:
 
 
 def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -> None:
-    """Warn of a step longer than the run, events without zeros, and an energy error out of all proportion.
+    """Warn of a step longer than the run, events without zeros, and a motion that was not resolved.
 
-    Of scenes with rigid bodies or without.
+    That is told by an energy error out of all proportion, else by an orbit, a turn of a charge or a step. Of scenes
+    with rigid bodies or without.
     """
     for place in result.pop("without_numbers", ()):
         message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
@@ -60,7 +62,10 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
     if error <= TOLERATED:
-        _judge_turns(result, ensemble=ensemble)
+        if "too_long" in result:
+            _warn_of_turn(result, ensemble=ensemble)
+        elif "unresolved" in result:
+            _warn_of_step(result, ensemble=ensemble)
         return
     whose = f"in copy {copy}, " if ensemble else ""
     advice = _advice(result, error, dt, order, _OF_RIGID_BODIES if rigid else _OF_POINTS)
@@ -69,17 +74,27 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 
 
-def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
-    """Warn of an orbit with too few steps: total energies hardly know of a light body that is lost."""
-    if "too_long" not in result:
-        return
-    copy, (body, about), steps, fewest, at_pericenter = result["too_long"]
+def _warn_of_step(result: dict[str, Any], *, ensemble: bool) -> None:
+    """Warn of a step that two of half its length contradict, where energies know nothing: under drag, without mass."""
+    copy, body, error, at_end, dt, order = result["unresolved"]
+    whose = f"in copy {copy}, " if ensemble else ""
+    which = "a step from the end" if at_end else "the first step"
+    # The error of one step goes as dt to one power more than that at the end.
+    advice = _advice(result, error, dt, order + 1, _OF_STEPS)
+    size = f"{error:.2g} of itself" if error < np.inf else "more than 1e308"
+    message = f"{whose}after {which} the velocity of body {body} is off by {size}: {advice}"
+    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+
+
+def _warn_of_turn(result: dict[str, Any], *, ensemble: bool) -> None:
+    """Warn of a turn with too few steps: total energies hardly know of a light body that is lost."""
+    copy, (body, place), steps, fewest, at_pericenter = result["too_long"]
     tight = ", as tight as at its pericenter," if at_pericenter else ""
     whose = f"in copy {copy}, " if ensemble else ""
     # A turn may take no time beside a step.
     shorter = f"a step that is {fewest / steps:.2g} times shorter or less, or " if steps > 0.0 else ""
     message = (
-        f"{whose}a turn of body {body} about body {about}{tight} has {steps:.3g} steps, and the method "
+        f"{whose}a turn of body {body} {place}{tight} has {steps:.3g} steps, and the method "
         f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, verner98)"
     )
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())

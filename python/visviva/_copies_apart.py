@@ -137,21 +137,22 @@ def _joined(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]
         result["dt_beyond"] = first["dt_beyond"]
     result["without_numbers"] = sorted(set.intersection(*(set(part["without_numbers"]) for part in parts)))
     # The worst of all; of equals the last, as the core has it.
-    errors = [
-        (part["energy_error"][0] + start, *part["energy_error"][1:])
-        for part, start in zip(parts, bounds, strict=False)
-        if "energy_error" in part
-    ]
-    if errors:
-        result["energy_error"] = max(reversed(errors), key=lambda error: error[1])
-    turns = [
-        (part["too_long"][0] + start, *part["too_long"][1:])
-        for part, start in zip(parts, bounds, strict=False)
-        if "too_long" in part
-    ]
-    if turns:
-        result["too_long"] = min(turns, key=lambda turn: turn[2])
+    told = _told(parts, bounds, "energy_error")
+    if told:
+        result["energy_error"] = max(reversed(told), key=lambda error: error[1])
+    told = _told(parts, bounds, "too_long")
+    if told:
+        result["too_long"] = min(told, key=lambda turn: turn[2])
+    told = _told(parts, bounds, "unresolved")
+    if told:
+        result["unresolved"] = max(reversed(told), key=lambda step: step[2])
     return result
+
+
+def _told(parts: list[dict[str, Any]], bounds: list[int], name: str) -> list[Any]:
+    """What the parts have to tell, each of one copy, under the number that it has in the whole."""
+    told = [(part[name], start) for part, start in zip(parts, bounds, strict=False) if name in part]
+    return [(copy + start, *rest) for (copy, *rest), start in told]
 
 
 def _stacked(parts: list[dict[str, Any]]) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def joined_result(parts: list[dict[str, Any]], asked: list[int]) -> dict[str, An
     else:
         for name in ("held", "node", "begun_position", "begun_velocity"):
             result["final"].pop(name, None)
-    for name in ("energy_error", "dt_beyond", "too_long"):
+    for name in ("energy_error", "dt_beyond", "too_long", "unresolved"):
         values = [part[name] for part in parts if name in part]
         if values:
             result[name] = values[-1]

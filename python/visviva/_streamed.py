@@ -5,6 +5,7 @@ The one idea: a copy has the bits that it has alone, so that parts may be run on
 
 from __future__ import annotations
 
+from operator import ge, lt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -91,11 +92,9 @@ def _keep_worst(worst: dict[str, Any], result: dict[str, Any], start: int) -> No
     """What is to be warned of, under the number that the copy has in the whole."""
     if "dt_beyond" in result:
         worst["dt_beyond"] = result["dt_beyond"]
-    if "energy_error" in result:
-        copy, *error = result["energy_error"]
-        if "energy_error" not in worst or error[0] >= worst["energy_error"][1]:
-            worst["energy_error"] = (copy + start, *error)
-    if "too_long" in result:
-        copy, *rest = result["too_long"]
-        if "too_long" not in worst or result["too_long"][2] < worst["too_long"][2]:
-            worst["too_long"] = (copy + start, *rest)
+    # Which number of each tells how bad it is: of steps in a turn few are bad. Of equals the core has these.
+    for name, place, worse in (("energy_error", 1, ge), ("too_long", 2, lt), ("unresolved", 2, ge)):
+        if name in result:
+            copy, *rest = result[name]
+            if name not in worst or worse(result[name][place], worst[name][place]):
+                worst[name] = (copy + start, *rest)

@@ -123,7 +123,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             "mass": full["mass"],
             "position": full["position"],
             "velocity": full["velocity"],
-            "radius": full["radius"] if full["radius"].any() else None,
+            # Some copies may be of points: who says so knows of radii.
+            "radius": full["radius"] if radius is not None or full["radius"].any() else None,
             "rigid": rigid,
             "forces": scene._keywords["forces"],
             "own_forces": None,
@@ -153,15 +154,18 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
         chosen = one_or_some(index, len(self))
         mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
-        radius = self.radius[chosen]
         continuation = continuation_of_copies(self._keywords["continuation"], rows_of(chosen))
         if isinstance(chosen, slice):
             own = turning_of_copies(self._keywords, chosen)
+            radius = None if self._keywords["radius"] is None else self.radius[chosen]
             some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius, **own)
             return with_continuation(some._own(self.forces[chosen]), continuation)
-        bodies = Particles(mass, position, velocity, self.scene.particles.names, radius)
+        bodies = Particles(mass, position, velocity, self.scene.particles.names, self.radius[chosen])
         own = turning_of_copies(self._keywords, chosen)
-        return with_continuation(self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own), continuation)
+        copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own)
+        if self._keywords["radius"] is not None:
+            copy._keywords["radius"] = bodies.radius[None]
+        return with_continuation(copy, continuation)
 
     if not TYPE_CHECKING:
 
@@ -186,7 +190,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
         own = turning_of_copies(self._keywords, slice(None))
-        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, self.radius, own)
+        radius = self._keywords["radius"]
+        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, radius, own)
 
     @property
     def _names(self) -> tuple[str, ...]:

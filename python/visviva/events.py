@@ -164,6 +164,11 @@ def apsis(
 ) -> Event:
     """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
 
+    A circle has no apsides, but rounding and the errors of steps take r·v from one sign to the other all the time. A
+    zero after which it seems to come no further from zero than that (for an adaptive method, four times its tolerance:
+    of orbits with an eccentricity below 4 `rtol`, of series below rtol/128) is not told. Where rounding alone makes an
+    ellipse of the circle, two to a turn may be.
+
     Units: those of the run.
 
     Parameters

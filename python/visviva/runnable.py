@@ -95,8 +95,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
             massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
             ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
             anew after it. All bodies are on the same steps, no closed form is used while two may touch, and
-            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused. Those that bounce
-            and come to rest on each other end the run, with `Status.RESTING`.
+            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused, and so are
+            collisions where no body has a radius. Those that bounce and come to rest on each other end the run, with
+            `Status.RESTING`.
         restitution : float, optional
             The part of their speed along the line of centers with which spheres part that bounce, from 0 to 1, the
             default.
@@ -140,7 +141,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         -----
         visviva.AccuracyWarning
             Fixed steps, beside rigid bodies, too, resolved nothing: the energy at the end is off by more than a
-            hundredth of kinetic + |potential|, or the step is longer than the run.
+            hundredth of kinetic + |potential|, an orbit or a charge in a magnetic field turns in fewer than six steps,
+            a step and two of half its length lead to other velocities, or the step is longer than the run.
 
         References
         ----------

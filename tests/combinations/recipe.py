@@ -207,9 +207,11 @@ def _case(recipe: Recipe) -> Case:
         how["dt"] = step
         if recipe.transformation and method.time_transformation:
             how |= {"time_transformation": recipe.transformation, "max_steps": MAX_STEPS}
-    if recipe.collisions:
+    # Points alone are refused.
+    spheres = scene.particles.radius.any()
+    if recipe.collisions and spheres:
         how["collisions"] = recipe.collisions
-    if recipe.collisions == "bounce":
+    if recipe.collisions == "bounce" and spheres:
         how["restitution"] = recipe.restitution
     if recipe.events:
         looked_for = [event(name, seed, scene, sign * end) for name, seed in recipe.events]

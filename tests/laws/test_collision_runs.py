@@ -171,8 +171,11 @@ def test_events_beside_collisions(rule: str) -> None:
 def test_without_spheres_nothing_is_looked_for() -> None:
     scene = vv.problems.pleiades().scene
     plain = scene.run([0.0, 1.0], record=["position", "energy"])
+    points = scene.ensemble(radius=np.zeros((1, 7)))[0]
     for options in ({"collisions": "bounce"}, {"collisions": "merge"}):
-        out = scene.run([0.0, 1.0], record=["position", "energy"], **options)
+        with pytest.raises(vv.InvalidInput, match=r"^collisions: expected bodies with a radius"):
+            scene.run([0.0, 1.0], **options)
+        out = points.run([0.0, 1.0], record=["position", "energy"], **options)
         assert np.array_equal(out.position, plain.position)
         assert len(out.collisions) == 0
         assert "no two bodies can touch" in str(out.plan)

@@ -120,9 +120,17 @@ fn may_touch(scene: &Scene, copy: usize) -> bool {
 }
 
 /// What collisions are asked for and may happen.
-pub fn wanted(scene: &Scene, request: &Request) -> Option<Collisions> {
-    request
-        .collisions
-        .filter(|_| scene.rigid.is_none())
-        .filter(|_| (0..scene.copies).any(|copy| may_touch(scene, copy)))
+///
+/// # Errors
+/// Where nothing is told of radii: points never touch, and whoever asks for collisions has forgotten them. What else is
+/// wrong with the request is told first.
+pub fn wanted(scene: &Scene, request: &Request) -> Result<Option<Collisions>> {
+    let Some(rule) = request.collisions.filter(|_| scene.rigid.is_none()) else { return Ok(None) };
+    if scene.radius.is_empty() {
+        let _ = request.check(scene)?;
+        let message = "expected bodies with a radius, and none has one, so that none can touch: give the radii to \
+                       Particles, or leave collisions out";
+        return Err(Error::invalid("collisions", message));
+    }
+    Ok((0..scene.copies).any(|copy| may_touch(scene, copy)).then_some(rule))
 }

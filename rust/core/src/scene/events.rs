@@ -93,6 +93,15 @@ pub struct Event {
     pub last: Option<u64>,
 }
 
+/// How well the places and the velocities of bodies are known within a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known {
+    /// To this part of themselves.
+    pub relative: f64,
+    /// And to this, places and velocities.
+    pub absolute: [f64; 2],
+}
+
 /// Bodies at one time.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
@@ -185,6 +194,18 @@ impl Event {
                 What::Energy(level) => level.abs(),
                 What::Contact(_) | What::Function(_) => 0.0,
             }
+    }
+
+    /// How far its value must come from zero between two zeros for the second to be one of the motion, places and
+    /// velocities being known so well. On a circle there are no apsides, but rounding and the errors of steps take the
+    /// value from one sign to the other all the time. Of events of another kind any zero is one.
+    pub fn least_swing(&self, sight: &Sight, known: &Known) -> Option<f64> {
+        let What::Apsis { .. } = self.what else { return None };
+        let size = |x: [f64; 3]| dot(x, x).sqrt();
+        let (r, v) = (size(sight.distance), size(sight.velocity));
+        let [of_place, of_velocity] = known.absolute;
+        let known = (known.relative * r + of_place) * v + (known.relative * v + of_velocity) * r;
+        Some(self.rounding(sight).max(known))
     }
 
     /// Refuses what cannot be looked at.

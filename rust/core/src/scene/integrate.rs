@@ -6,15 +6,18 @@
 mod adaptive;
 mod events;
 mod fixed;
+mod halved;
 mod held;
 mod report;
 
 pub use events::Found;
+pub use halved::Unresolved;
 pub use report::{Counts, Ending, Report};
 
 use super::Scene;
 use super::columns::Writer;
 use super::continuation::Continuation;
+use super::events::Known;
 use super::plan::Plan;
 use super::request::AbsoluteTolerances;
 use super::unit::{Prepared, Unit};
@@ -26,6 +29,11 @@ use crate::parallel::{Ticker, for_chunks};
 
 /// Units that one thread takes at a time: enough that lanes seldom run dry, few enough for balance.
 const UNITS_PER_CHUNK: usize = 128;
+
+/// Tolerances that continuous extensions are off at most within a step, and series. Of circles, the velocity along the radius
+/// was seen to reach 2.6 of them by `tsitouras54` and `dormand_prince54`, and 0.001 by `taylor`.
+const OF_EXTENSIONS: f64 = 2.0;
+const OF_SERIES: f64 = 1.0 / 256.0;
 
 /// What all units of a run share.
 pub struct Job<'a> {
@@ -64,9 +72,27 @@ impl Job<'_> {
         self.watches && !self.plan.events.is_empty()
     }
 
+    /// How well a state within a step is known: to some tolerances, or to rounding where steps choose no error.
+    fn known(&self) -> Known {
+        let tolerances = match self.plan.method.scheme {
+            Scheme::Embedded(_) => OF_EXTENSIONS,
+            Scheme::Taylor(_) => OF_SERIES,
+            _ => 0.0,
+        };
+        let largest =
+            |each: Option<&[f64]>| each.into_iter().flatten().fold(0.0, |most: f64, &x| most.max(x));
+        let absolute = self.atol.map_or([0.0; 2], |atol| atol.kinds().map(largest));
+        Known { relative: tolerances * self.rtol, absolute: absolute.map(|atol| tolerances * atol) }
+    }
+
     /// The time from the start of the scene to that of the run, in the plan's units.
     fn begun(&self) -> f64 {
         scale(self.plan.dt.unwrap_or(0.0), -self.plan.units.time) * self.plan.from as f64
+    }
+
+    /// A step of fixed length, in the plan's units.
+    fn step(&self) -> f64 {
+        scale(self.plan.dt.unwrap_or(self.plan.direction), -self.plan.units.time)
     }
 
     fn prepare(&self, unit: &Unit, ticker: &mut Ticker<'_>) -> Result<Prepared> {

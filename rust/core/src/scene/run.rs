@@ -13,7 +13,7 @@ use super::closed_form;
 use super::collisions;
 use super::columns::{Columns, Missing, Wanted};
 use super::continuation::{Continuation, Held};
-use super::integrate::{self, Counts, Ending, Job};
+use super::integrate::{self, Counts, Ending, Job, Unresolved};
 use super::plan::{Plan, Turning};
 use super::request::Request;
 use super::room::give_back;
@@ -42,6 +42,8 @@ pub struct Outcome {
     pub time: f64,
     /// How far the energy is off at the end, at least, against kinetic + |potential|; NaN if nobody looked.
     pub energy_error: f64,
+    /// The step, at the start or at the end, that is furthest from resolving the motion, if one was found.
+    pub unresolved: Option<Unresolved>,
 }
 
 /// The states that the copies reached, particle after particle, copy after copy.
@@ -152,7 +154,7 @@ impl Part<'_> {
 /// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
-    match collisions::wanted(scene, request) {
+    match collisions::wanted(scene, request)? {
         Some(rule) => collisions::run(scene, request, rule, ticker),
         None => run_through(scene, request, ticker),
     }
@@ -332,6 +334,7 @@ impl Outcome {
             counts: Counts::default(),
             time: times[times.len() - 1],
             energy_error: f64::NAN,
+            unresolved: None,
         }
     }
 

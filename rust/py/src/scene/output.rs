@@ -9,7 +9,7 @@ use visviva_core::scene::Scene;
 use visviva_core::scene::collisions::{Collision, Table};
 use visviva_core::scene::columns::Derived;
 use visviva_core::scene::continuation::FORM;
-use visviva_core::scene::integrate::Ending;
+use visviva_core::scene::integrate::{Ending, Unresolved};
 use visviva_core::scene::plan::{Plan, TooLong};
 use visviva_core::scene::request::Request;
 use visviva_core::scene::run::{Kept, Outcome, Output};
@@ -185,14 +185,20 @@ pub(super) fn output_dict<'py>(
             dict.set_item("dt_beyond", (step, span))?;
         }
     }
-    if let Some(TooLong { copy, bodies, steps, fewest, at_pericenter }) = output.plan.too_long {
-        dict.set_item("too_long", (copy, bodies, steps, fewest, at_pericenter))?;
+    if let Some(turn @ TooLong { copy, body, steps, fewest, at_pericenter, .. }) = &output.plan.too_long {
+        dict.set_item("too_long", (copy, (body, turn.place()), steps, fewest, at_pericenter))?;
     }
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());
     if let Some((copy, error)) = worst.max_by(|a, b| a.1.total_cmp(&b.1)) {
         let step = output.plan.dt.or(output.plan.transformed.map(|(_, dt)| dt)).map(f64::abs);
         dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
+    }
+    let doubts = outcomes.iter().enumerate().filter_map(|(copy, outcome)| Some((copy, outcome.unresolved?)));
+    if let (Some((copy, Unresolved { body, error, at_end })), Some(dt)) =
+        (doubts.max_by(|a, b| a.1.error.total_cmp(&b.1.error)), output.plan.dt)
+    {
+        dict.set_item("unresolved", (copy, body, error, at_end, dt.abs(), output.plan.method.order))?;
     }
     // Steps that are chosen for rigid bodies end where no two lengths of them agree.
     let chosen = output.plan.turning.steps() && output.plan.tolerance.is_some();

@@ -23,13 +23,13 @@ use crate::forces::Dynamics;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
-use crate::ode::Scheme;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::System;
 use crate::ode::transformed::Transformed;
 use crate::ode::trial::{Cost, Trial, trial};
+use crate::ode::{Embedded, Scheme};
 use crate::parallel::Ticker;
 use core::iter::Enumerate;
 use core::slice;
@@ -77,6 +77,14 @@ pub(super) fn run(
             Err(other) => return Err(other),
         }
     }
+}
+
+/// The fractions of a step at which a method of stages evaluates forces, but for its start.
+fn stages_of(scheme: &Scheme) -> Vec<Lanes> {
+    let Scheme::Embedded(Embedded { tableau, .. }) = scheme else { return Vec::new() };
+    let mut fractions: Vec<Lanes> = tableau.c.iter().skip(1).map(|&c| Lanes::from_double_double(c)).collect();
+    fractions.dedup();
+    fractions
 }
 
 /// A unit in its lane (in all lanes, if packed).
@@ -130,6 +138,8 @@ struct Run<'a> {
     norm: Norm<Lanes>,
     clock: Clock<Lanes>,
     trial: Box<dyn Trial<Lanes>>,
+    /// At what fractions of a step a method of stages evaluates forces, from the second stage on.
+    fractions: Vec<Lanes>,
     cost: Cost,
     /// The events of the units in the lanes, if they are looked for side by side.
     abreast: Option<Abreast<'a>>,
@@ -167,6 +177,7 @@ impl<'a> Run<'a> {
             slots: [const { None }; WIDTH],
             reports: Vec::new(),
             clock: Clock::new(end),
+            fractions: stages_of(&plan.method.scheme),
             cost: trial.cost(),
             trial,
             norm: Norm::new(first.state_shape(1), system.form(), Lanes::splat(job.rtol), together),
@@ -306,7 +317,13 @@ impl<'a> Run<'a> {
                 from: outcome.from,
                 to: self.clock.elapsed,
                 last: outcome.finished,
-                path: Arc::new(Path::new(&self.first, &*self.trial, &self.state, outcome.h, packed)),
+                path: Arc::new(Path::new(
+                    &self.first,
+                    (&*self.trial, &self.fractions),
+                    &self.state,
+                    outcome.h,
+                    packed,
+                )),
             };
             followers.through(&span, ticker)?;
         }

@@ -14,8 +14,7 @@ mod inside;
 mod search;
 mod turns;
 
-use super::super::events::{Event, Moving, Sight, Surroundings, View, What};
-use super::super::frame::Moved;
+use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What};
 use super::super::unit::{Prepared, Turned};
 use super::{Ending, Job, Report};
 use crate::error::Result;
@@ -102,6 +101,10 @@ pub(super) struct Watch<'a> {
     suspects: Vec<usize>,
     /// The terms of each coordinate of each body on that step.
     terms: Vec<[f64; 2]>,
+    /// How well the inside of a step is known.
+    known: Known,
+    /// When each event was zero last, or nearly so at the start; before all time if it never was.
+    last: Vec<f64>,
     /// Zeros of each event so far.
     counts: Vec<u64>,
     found: Vec<Found>,
@@ -166,6 +169,8 @@ impl<'a> Watch<'a> {
             next: vec![Sight::default(); events.len()],
             suspects: Vec::new(),
             terms: Vec::new(),
+            known: job.known(),
+            last: vec![-plan.direction * f64::INFINITY; events.len()],
             counts: vec![0; events.len()],
             found: Vec::new(),
             stopped: false,
@@ -176,6 +181,10 @@ impl<'a> Watch<'a> {
             .map(|(index, spheres)| Contacts::new(index, spheres, &watch.bodies.indices, &watch.before));
         for event in 0..watch.events.len() {
             let mut sight = watch.sight(unit, event, (&watch.before, job.begun()), ticker)?;
+            let least = watch.event(event).0.least_swing(&sight, &watch.known);
+            if least.is_some_and(|least| sight.value.abs() <= least) {
+                watch.last[event] = job.begun();
+            }
             // What starts at zero has not come there.
             if sight.value.abs() <= watch.event(event).0.rounding(&sight) {
                 sight.value = 0.0;
@@ -215,29 +224,6 @@ impl<'a> Watch<'a> {
     /// Whether spheres are looked for on every step.
     fn looks_at_all(&self) -> bool {
         self.contacts.is_some()
-    }
-
-    /// Adds the pairs of spheres that may touch in a step `h`.
-    fn suspect_spheres(&mut self, h: f64) {
-        let Some(contacts) = &mut self.contacts else { return };
-        for pair in contacts.pairs(&self.before, &self.after, h) {
-            let [start, end] = [&self.before, &self.after]
-                .map(|bodies| pair.event.sight_of(bodies, &pair.places, &Moved::NOWHERE));
-            let ends = [&start, &end];
-            let clear = pair.event.rates(ends, h).is_some_and(|rates| {
-                let cubic = cubic(ends.map(|end| end.value + pair.shift), rates, h);
-                keeps_clear(cubic) || keeps_clear_after_all(cubic)
-            });
-            if !clear {
-                self.suspects.push(self.events.len() + self.pairs.len());
-                self.pairs.push(pair);
-                self.sights.push(start);
-                self.next.push(end);
-            }
-        }
-        if self.pairs.is_empty() {
-            contacts.go_on(&self.after);
-        }
     }
 
     /// What an event sees of these bodies after this time.

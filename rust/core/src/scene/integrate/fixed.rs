@@ -1,10 +1,11 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
 use super::super::layout::Layout;
+use super::super::plan::Plan;
 use super::super::unit::{self, Prepared, Unit};
 use super::events::{Abreast, Along, Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
-use super::{Job, Result, held};
+use super::{Job, Result, halved, held};
 use crate::error::Error;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -62,7 +63,7 @@ fn lockstep(
     let own = plan.relative || rigid.is_some();
     if own || room.as_ref().is_none_or(|(other, ..)| *other != shape) {
         let state = prepared[0].blank_state(units.len());
-        let h = scale(dt, -plan.units.time);
+        let h = job.step();
         let stepper = match rigid {
             Some(assembly) => body_stepper(plan.method, (h, plan.tolerance), assembly, &state)?,
             None => stepper(plan.method, h, &dynamics, &state)?,
@@ -70,11 +71,7 @@ fn lockstep(
         *room = Some((shape, state, stepper));
     }
     let Some((_, state, stepper)) = room else { return Ok(Vec::new()) };
-    state.clear();
-    for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
-        // Lanes without a unit run along with a copy of the last.
-        prepared[lane.min(units.len() - 1)].write(state, lane);
-    }
+    lay(plan, &prepared, state);
     match job.from {
         None => stepper.restart(),
         Some(from) => held::take_up(job, from, &prepared, state, &mut **stepper),
@@ -108,7 +105,7 @@ fn lockstep(
         }
     }
     let along = match (plan.layout, &watches[..]) {
-        (Layout::Packed, [Some(watch)]) => Along::of(watch, scale(dt, -unit_of_time)),
+        (Layout::Packed, [Some(watch)]) => Along::of(watch, job.step()),
         _ => None,
     };
     let mut records = Records {
@@ -116,7 +113,7 @@ fn lockstep(
         along,
         node: plan.from,
         abreast,
-        step: scale(dt, -unit_of_time),
+        step: job.step(),
         between: None,
         watched: watches.iter().any(Option::is_some),
         looks: vec![0; watches.len()],
@@ -149,10 +146,22 @@ fn lockstep(
     let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() - repeated };
     let ended = place(&job.end()).past.is_none() || records.last.is_none();
     let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
+    if stands && halved::pays(job, steps) {
+        halved::look(job, &records.units, (&mut reports, state, node), &mut dynamics, ticker)?;
+    }
     if job.keeps && stands && ended && node > 0 {
         held::leave(plan.method, &records.units, &mut reports, node, state, &mut **stepper);
     }
     Ok(reports)
+}
+
+/// Lays units at their start into a state.
+pub(super) fn lay(plan: &Plan, units: &[Prepared], state: &mut State<Lanes>) {
+    state.clear();
+    for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
+        // Lanes without a unit run along with a copy of the last.
+        units[lane.min(units.len() - 1)].write(state, lane);
+    }
 }
 
 /// What has been recorded of units in lockstep.

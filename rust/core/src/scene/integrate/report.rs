@@ -2,7 +2,7 @@
 
 use super::super::continuation::UnitHeld;
 use super::super::unit::{Prepared, Turned, Unit};
-use super::{Found, Job};
+use super::{Found, Job, Unresolved};
 use crate::numerics::lanes::Lanes;
 use crate::ode::state::State;
 use core::ops::AddAssign;
@@ -78,6 +78,8 @@ pub struct Report {
     pub found: Vec<Found>,
     /// What the unit holds, if it ended on a node.
     pub held: Option<UnitHeld>,
+    /// A step that does not resolve the motion, if it was looked for and found.
+    pub unresolved: Option<Unresolved>,
 }
 
 impl Job<'_> {
@@ -109,6 +111,7 @@ impl Job<'_> {
             turned,
             found: Vec::new(),
             held: None,
+            unresolved: None,
         }
     }
 
@@ -140,6 +143,7 @@ impl Job<'_> {
             turned: Vec::new(),
             found: Vec::new(),
             held: None,
+            unresolved: None,
         }
     }
 }

@@ -86,12 +86,12 @@ impl Plan {
                 );
                 row("long span", format!("{periods:.0} of the shortest period"), why);
             }
-            if let Some(TooLong { bodies: (body, about), steps, fewest, at_pericenter, .. }) = self.too_long {
-                let tight = if at_pericenter { ", as tight as at its pericenter" } else { "" };
+            if let Some(turn @ TooLong { body, steps, fewest, at_pericenter, .. }) = &self.too_long {
+                let tight = if *at_pericenter { ", as tight as at its pericenter" } else { "" };
                 let why = format!("the method tells nothing of an orbit with fewer than {fewest}");
                 row(
                     "step too long",
-                    format!("{steps:.2} in a turn of body {body} about body {about}{tight}"),
+                    format!("{steps:.2} in a turn of body {body} {}{tight}", turn.place()),
                     why,
                 );
             }

@@ -1,9 +1,9 @@
 //! The orbits on which bodies are at the start, each about the one that pulls it most, and moons about the one whose pull
-//! changes most on the way; and steps that are too long for them.
+//! changes most on the way; the turns of charges in magnetic fields; and steps that are too long for them.
 
 use super::super::{Scene, distance};
 use crate::forces::ForceTerm;
-use crate::ode::{FEWEST_STEPS, Method};
+use crate::ode::{FEWEST_STEPS, Method, Scheme};
 use core::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -85,13 +85,15 @@ fn turn_about(scene: &Scene, copy: usize, constant: f64, (body, about): (usize, 
     })
 }
 
-/// A step that is too long for an orbit at the start.
+/// A step that is too long for an orbit at the start, or for a turn in a magnetic field.
 #[derive(Clone, Copy, Debug)]
 pub struct TooLong {
     /// The copy.
     pub copy: usize,
-    /// The body on the orbit, and the one that it is about.
-    pub bodies: (usize, usize),
+    /// The body that turns.
+    pub body: usize,
+    /// The one that it is about, unless it turns in a magnetic field.
+    pub about: Option<usize>,
     /// Steps in a turn, or in one on a circle through the pericenter.
     pub steps: f64,
     /// How many the method needs to tell anything of it.
@@ -100,8 +102,14 @@ pub struct TooLong {
     pub at_pericenter: bool,
 }
 
-/// The orbit with the fewest steps, if a method with equal steps tells nothing of it: total energies hardly know of a light
-/// body that is lost.
+impl TooLong {
+    /// About what the body turns.
+    pub fn place(&self) -> String {
+        self.about.map_or_else(|| "in the magnetic field".to_owned(), |about| format!("about body {about}"))
+    }
+}
+
+/// The turn with the fewest steps, if a method with equal steps tells nothing of it.
 pub(super) fn too_long(
     scene: &Scene,
     forces: &[Arc<dyn ForceTerm>],
@@ -110,6 +118,44 @@ pub(super) fn too_long(
     touching: bool,
 ) -> Option<TooLong> {
     let dt = dt?.abs();
+    let orbit = orbit_too_long(scene, forces, method, (dt, span), touching);
+    let gyration = gyration_too_long(scene, method, dt.min(span));
+    let fewer = |a: TooLong, b: TooLong| if b.steps < a.steps { b } else { a };
+    orbit.into_iter().chain(gyration).reduce(fewer)
+}
+
+/// The turn of a charge in magnetic fields with the fewest steps, for a method that turns velocities exactly: no energy
+/// knows that bodies are carried past their circles. Fields add.
+fn gyration_too_long(scene: &Scene, method: &Method, dt: f64) -> Option<TooLong> {
+    if !matches!(method.scheme, Scheme::Boris(_)) {
+        return None;
+    }
+    let mut worst: Option<TooLong> = None;
+    for copy in 0..scene.copies {
+        let fields: Vec<_> = scene.forces_of(copy).iter().filter_map(|force| force.as_magnetic()).collect();
+        for (body, &mass) in scene.masses(copy).iter().enumerate() {
+            let push =
+                |c: usize| fields.iter().map(|field| field.charge_of(body) * field.field[c]).sum::<f64>();
+            let rate = distance([push(0), push(1), push(2)], [0.0; 3]) / mass;
+            let steps = TAU / (rate * dt);
+            if steps < FEWEST_STEPS && worst.is_none_or(|worst| steps < worst.steps) {
+                let fewest = FEWEST_STEPS;
+                worst = Some(TooLong { copy, body, about: None, steps, fewest, at_pericenter: false });
+            }
+        }
+    }
+    worst
+}
+
+/// The orbit with the fewest steps, if a method with equal steps tells nothing of it: total energies hardly know of a light
+/// body that is lost.
+fn orbit_too_long(
+    scene: &Scene,
+    forces: &[Arc<dyn ForceTerm>],
+    method: &Method,
+    (dt, span): (f64, f64),
+    touching: bool,
+) -> Option<TooLong> {
     let newtonian = |forces: &[Arc<dyn ForceTerm>]| forces.iter().find_map(|force| force.as_newtonian());
     let told = newtonian(forces);
     if method.adaptive() || (told.is_none() && scene.own_forces.is_none()) {
@@ -142,7 +188,7 @@ pub(super) fn too_long(
                 let steps = turn / dt;
                 // Of less than a turn nothing is said.
                 if steps < fewest && period <= span && worst.is_none_or(|worst| steps < worst.steps) {
-                    worst = Some(TooLong { copy, bodies: (body, about), steps, fewest, at_pericenter });
+                    worst = Some(TooLong { copy, body, about: Some(about), steps, fewest, at_pericenter });
                 }
             }
         }

@@ -16,7 +16,7 @@ use crate::parallel::Ticker;
 /// # Errors
 /// As [`Plan::new`].
 pub fn plan(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Plan> {
-    match collisions::wanted(scene, request) {
+    match collisions::wanted(scene, request)? {
         Some(rule) => collisions::plan(scene, request, rule, ticker),
         None => plan_through(scene, request, ticker),
     }

@@ -6,7 +6,7 @@
 //! states were recorded, else the start. A unit whose numbers have ceased to be finite has reached its last output.
 
 use super::super::columns::Columns;
-use super::super::integrate::{self, Ending, Job, Report};
+use super::super::integrate::{self, Ending, Job, Report, Unresolved};
 use super::super::request::Request;
 use super::super::unit::Unit;
 use super::{Outcome, Part, Reached};
@@ -47,6 +47,7 @@ pub(super) fn gather(
         }
         outcome.rows = outcome.rows.min(report.rows);
         outcome.counts += report.counts;
+        outcome.unresolved = Unresolved::worse(outcome.unresolved, report.unresolved);
         if earlier {
             outcome.time = time;
         }

@@ -11,14 +11,14 @@ use crate::forces::gravity::series::passive::PullSeries;
 use crate::forces::series::Series;
 use crate::forces::{Force, Phase};
 use crate::numerics::element::{Element, Pass, View};
-use crate::numerics::lanes::{Bits, Lanes};
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::system::{Form, Needs, System};
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 mod series;
 use series::{Coefficients, Shifted};
@@ -35,13 +35,16 @@ pub(super) struct Path {
     blocks: Vec<Lanes>,
     /// The same as series, of a method that has them.
     coefficients: Option<Coefficients>,
+    /// The times of the stages of a step as long as this one, and where the bodies are then, once somebody has asked.
+    stages: Vec<(Lanes, OnceLock<Vec<Lanes>>)>,
 }
 
 impl Path {
-    /// Of the step that the trial has tried from a state, once its continuous extension is ready.
+    /// Of the step that the trial has tried from a state, once its continuous extension is ready; its stages are at these
+    /// fractions of it.
     pub(super) fn new(
         unit: &Prepared,
-        trial: &dyn Trial<Lanes>,
+        (trial, fractions): (&dyn Trial<Lanes>, &[Lanes]),
         state: &State<Lanes>,
         h: Lanes,
         packed: bool,
@@ -54,7 +57,8 @@ impl Path {
             blocks = Self::apart(unit, &blocks, q.len());
         }
         let coefficients = trial.series().map(|jet| Coefficients::new(unit, jet, packed));
-        Self { h, numbers, blocks, coefficients }
+        let stages = fractions.iter().map(|&fraction| (h * fraction, OnceLock::new())).collect();
+        Self { h, numbers, blocks, coefficients, stages }
     }
 
     /// Of packed bodies each in all lanes: their numbers in blocks of a length.
@@ -75,6 +79,18 @@ impl Path {
     /// Writes where the bodies are at the time `t` since the start of the step.
     fn at(&self, t: &Lanes, into: &mut [Lanes]) {
         Lanes::pass(At { path: self, t, into });
+    }
+
+    /// Where the bodies are at a stage of a step as long as this one, if `t` is the time of one in these lanes: most massless
+    /// bodies take such a step, and all that do ask for the same places.
+    fn at_stage(&self, t: &Lanes, lanes: Bits) -> Option<&[Lanes]> {
+        let is_then = |time: &Lanes| (0..WIDTH).all(|lane| time.0[lane] == t.0[lane] || !lanes.lane(lane));
+        let (time, places) = self.stages.iter().find(|(time, _)| is_then(time))?;
+        Some(places.get_or_init(|| {
+            let mut places = vec![Lanes::zero(); self.numbers];
+            self.at(time, &mut places);
+            places
+        }))
     }
 }
 
@@ -140,6 +156,8 @@ pub(super) struct Guided {
     path: Arc<Path>,
     /// The time at which the step of the massive bodies begins.
     base: Lanes,
+    /// The lanes whose bodies move; in the others nothing matters.
+    pub(super) running: Bits,
     /// In the scene's order, which is the order of summation.
     terms: Vec<Term>,
     needs: Needs,
@@ -176,8 +194,9 @@ impl Guided {
         let blocks = vec![Lanes::zero(); 3 * numbers];
         Self {
             components: guide.shape.components,
-            path: Arc::new(Path { h: Lanes::one(), numbers, blocks, coefficients: None }),
+            path: Arc::new(Path { h: Lanes::one(), numbers, blocks, coefficients: None, stages: Vec::new() }),
             base: Lanes::zero(),
+            running: Bits(0xff),
             terms,
             needs,
             places: vec![Lanes::zero(); numbers],
@@ -247,19 +266,27 @@ impl System<Lanes> for Guided {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.evaluations += 1;
-        self.path.at(t, &mut self.places);
-        let phase = Phase { t: &(self.base + *t), q, v };
+        let places = match self.path.at_stage(t, self.running) {
+            Some(places) => places,
+            None => {
+                self.path.at(t, &mut self.places);
+                &self.places
+            }
+        };
         for (index, term) in self.terms.iter_mut().enumerate() {
             match term {
                 Term::Pull { strength, softening2, .. } => Lanes::pass(Pull {
-                    places: &self.places,
+                    places,
                     strength,
                     softening2: *softening2,
                     q,
                     a: &mut *a,
                     first: index == 0,
                 }),
-                Term::Other(force, _) => force.apply(&phase, a, index == 0, ticker)?,
+                Term::Other(force, _) => {
+                    let phase = Phase { t: &(self.base + *t), q, v };
+                    force.apply(&phase, a, index == 0, ticker)?;
+                }
             }
         }
         Ok(())

@@ -52,6 +52,9 @@ impl Run<'_> {
             if !running.any() {
                 return Ok(());
             }
+            if let Forces::Along(guided) = &mut self.forces {
+                guided.running = running;
+            }
             self.advance(core::mem::replace(&mut fresh, Bits(0)), running, ticker)?;
         }
     }

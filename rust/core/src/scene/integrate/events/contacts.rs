@@ -5,6 +5,9 @@
 
 use super::super::super::collisions::{Spheres, TOUCH, swept};
 use super::super::super::events::{Event, Moving, What};
+use super::super::super::frame::Moved;
+use super::Watch;
+use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
 
 /// A pair under watch in the step at hand: their places among the bodies that are looked at.
 pub(super) struct Pair {
@@ -103,4 +106,29 @@ fn passed([x0, x1]: [f64; 2], [v0, v1]: [f64; 2], h: f64, radius: f64) -> [f64; 
     let room = radius + bend + 4.0 * f64::EPSILON * x0.abs().max(x1.abs());
     let (low, high) = (x0.min(x1).min(a).min(b), x0.max(x1).max(a).max(b));
     [low - room, high + room]
+}
+
+impl Watch<'_> {
+    /// Adds the pairs of spheres that may touch in a step `h`.
+    pub(super) fn suspect_spheres(&mut self, h: f64) {
+        let Some(contacts) = &mut self.contacts else { return };
+        for pair in contacts.pairs(&self.before, &self.after, h) {
+            let [start, end] = [&self.before, &self.after]
+                .map(|bodies| pair.event.sight_of(bodies, &pair.places, &Moved::NOWHERE));
+            let ends = [&start, &end];
+            let clear = pair.event.rates(ends, h).is_some_and(|rates| {
+                let cubic = cubic(ends.map(|end| end.value + pair.shift), rates, h);
+                keeps_clear(cubic) || keeps_clear_after_all(cubic)
+            });
+            if !clear {
+                self.suspects.push(self.events.len() + self.pairs.len());
+                self.pairs.push(pair);
+                self.sights.push(start);
+                self.next.push(end);
+            }
+        }
+        if self.pairs.is_empty() {
+            contacts.go_on(&self.after);
+        }
+    }
 }

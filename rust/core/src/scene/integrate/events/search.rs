@@ -47,8 +47,34 @@ fn crosses(start: f64, end: f64) -> bool {
 }
 
 impl Search<'_, '_> {
-    /// The zeros, as fractions of the step.
+    /// The zeros of the motion, as fractions of the step.
     pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+        let mut zeros = self.all_zeros(step, ticker)?;
+        zeros.retain(|&theta| self.is_of_the_motion(theta));
+        Ok(zeros)
+    }
+
+    /// Whether a zero is none that rounding and the errors of steps have made. Told at once, and from this step alone: a run
+    /// may end with it. The value may have come further from zero since it was zero last than they take it, were it a
+    /// parabola with the slope that it has here; and where on this step it comes no further, a radian must have passed.
+    fn is_of_the_motion(&mut self, theta: f64) -> bool {
+        let Some(last) = self.watch.last.get_mut(self.event) else { return true };
+        let at = self.span.at(theta);
+        let since = at - core::mem::replace(last, at);
+        let sight = &self.watch.sights[self.event];
+        let Some(least) = self.watch.event(self.event).0.least_swing(sight, &self.watch.known) else {
+            return true;
+        };
+        let [start, end] = self.ends.map(f64::abs);
+        let steps = since / (self.span.to - self.span.from);
+        let turned = scale(since, self.watch.job.plan.units.time);
+        let a_radian =
+            turned * turned * dot(sight.velocity, sight.velocity) >= dot(sight.distance, sight.distance);
+        0.25 * (start + end) * steps > least && (start.max(end) > least || a_radian)
+    }
+
+    /// All zeros, as fractions of the step.
+    fn all_zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
         // Upwards along the run backwards is downwards in time.
         let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
         let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
