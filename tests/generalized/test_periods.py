@@ -119,3 +119,36 @@ def test_what_is_infinite_is_refused_by_its_name() -> None:
         moving((1 - sp.exp(-x)) ** 2, 0.0, 1.5).period()
     with pytest.raises(vv.InvalidInput, match="separatrix"):
         moving(-sp.cos(x), 0.0, 2.0).period(turn=2 * np.pi)
+
+
+@pytest.mark.parametrize("amplitude", [0.01, 1.0, 20.0])
+def test_a_relativistic_oscillator_by_its_lagrangian(amplitude: float) -> None:
+    """−√(1 − v²) − x²/2: at x = a sin s the rapidity has cosh − 1 = u = a² cos² s / 2."""
+
+    def integral(integrand: Any) -> float:
+        def at(s: Any) -> Any:
+            return integrand(s, (amplitude * mpmath.cos(s)) ** 2 / 2)
+
+        parts = [mpmath.pi / 2 * (1 - mpmath.mpf(2) ** -k) for k in range(16)] + [mpmath.pi / 2]
+        return float(4 * mpmath.quad(at, parts))
+
+    found = vv.Lagrangian(-sp.sqrt(1 - x.diff(vv.time) ** 2) - x**2 / 2, [x], position=[amplitude], velocity=[0.0])
+    period = integral(lambda s, u: mpmath.sqrt(2) * (1 + u) / mpmath.sqrt(u + 2))
+    area = integral(lambda s, u: amplitude * mpmath.cos(s) * mpmath.sqrt(u * (u + 2)))
+    assert found.period() == pytest.approx(period, rel=1e-12)
+    assert found.action_variable() == pytest.approx(area / (2 * np.pi), rel=1e-12)
+
+
+def test_what_has_no_period_beyond_quadratic_velocities_is_refused() -> None:
+    free = vv.Lagrangian(-sp.sqrt(1 - x.diff(vv.time) ** 2), [x], position=[0.0], velocity=[0.5])
+    with pytest.raises(vv.InvalidInput, match="does not come back"):
+        free.period()
+    rotating = vv.Lagrangian(-sp.sqrt(1 - x.diff(vv.time) ** 2) + sp.cos(x) / 10, [x], position=[0.0], velocity=[0.8])
+    with pytest.raises(vv.InvalidInput, match="turn"):
+        rotating.period()
+    energy = 1 / 0.6 - 0.1
+    parts = mpmath.linspace(0, 2 * mpmath.pi, 9)
+    period = mpmath.quad(lambda q: 1 / mpmath.sqrt(1 - (energy + mpmath.cos(q) / 10) ** -2), parts)
+    assert rotating.period(turn=2 * np.pi) == pytest.approx(float(period), rel=1e-12)
+    with pytest.raises(vv.InvalidInput, match="energy does not repeat"):
+        rotating.period(turn=3.0)

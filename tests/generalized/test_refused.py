@@ -315,3 +315,21 @@ def test_results_are_read_only() -> None:
 def test_too_long_a_step_is_told() -> None:
     with pytest.raises(vv.ConvergenceError, match="take a smaller dt"):
         PENDULUM.run(100.0, dt=10.0)
+
+
+def test_a_start_that_overflows_or_has_no_mass_says_so() -> None:
+    x = vv.coordinate("x")
+    v = x.diff(vv.time)
+    quartic = vv.Lagrangian(v**4 - x**2, [x], position=[1.0], velocity=[0.0])
+    with pytest.raises(vv.InvalidInput, match=r"mass matrix.*is singular there.*start with a velocity") as refused:
+        quartic.run(1.0)
+    assert refused.value.argument == "velocity"
+    assert quartic.at(velocity=[1.0]).run(0.1).status is vv.Status.OK
+    steep = vv.Lagrangian(v**2 / 2 - sp.exp(x), [x], position=[1000.0])
+    for system in (steep, steep.hamiltonian()):
+        with pytest.raises(vv.InvalidInput, match=r"beyond 1.8e308"):
+            system.run(1.0)
+    pole = vv.Lagrangian(v**2 / 2 - 1 / x, [x], position=[0.0])
+    for system in (pole, pole.hamiltonian()):
+        with pytest.raises(vv.InvalidInput, match="a singularity of"):
+            system.run(1.0)

@@ -14,6 +14,7 @@ from visviva.generalized._equations import HamiltonsEquations, hamiltons_equatio
 from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
+from visviva.generalized._starts import refuse_a_start
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
 
@@ -264,6 +265,4 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
     def _check_start(self) -> None:
         rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
         if not np.isfinite(rates).all():
-            raise InvalidInput(
-                "position", "the equations have no meaning at the start: a singularity of H; start away from it"
-            )
+            refuse_a_start(self, self._start(), "a rate of Hamilton's equations is no number")

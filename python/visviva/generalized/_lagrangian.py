@@ -14,6 +14,7 @@ from visviva.generalized._equations import EquationsOfMotion, euler_lagrange
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
+from visviva.generalized._starts import refuse_a_start
 from visviva.generalized._symbolic import sympy as imported_sympy
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._variations import Variations
@@ -305,21 +306,8 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
             check_on_constraints(self, state)
         if self._has_rates(state):
             return
-        # At rest only, or anywhere at these places?
-        speeds = state[len(self.coordinates) :]
-        moving = np.concatenate([state[: len(self.coordinates)], np.where(speeds == 0.0, 1.0, speeds)])
         index = int(np.argmin(np.isfinite(self._rates(state))))
-        if self._has_rates(moving):
-            raise InvalidInput(
-                "velocity",
-                f"the acceleration of {self.coordinates[index]!r} is no number at a velocity of 0: a force along v/|v| "
-                "(dry friction) has no direction there; start with a velocity, or write np.tanh(v/width) for v/|v|",
-            )
-        raise InvalidInput(
-            "position",
-            f"the acceleration of {self.coordinates[index]!r} is no number at the start: a singularity of these "
-            "coordinates, or a mass matrix that is singular there; start away from it or take other coordinates",
-        )
+        refuse_a_start(self, state, f"the acceleration of {self.coordinates[index]!r} is no number")
 
     def _rates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
         rates: NDArray[np.float64] = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]

@@ -1,4 +1,4 @@
-"""Period and action of a motion of one degree of freedom that comes back, for any Hamiltonian.
+"""Period and action of a motion of one degree of freedom that comes back, for any Hamiltonian and any Lagrangian.
 
 The one idea: a closed curve comes back to a line across its flow, to round-off by Hénon's method; along it ∫ p q̇ dt is
 integrated over panels that are halved where it turns. M. Hénon, Physica D 5 (1982) 412.
@@ -6,7 +6,7 @@ integrated over panels that are halved where it turns. M. Hénon, Physica D 5 (1
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,7 +20,15 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["action_of_hamiltonian", "gauge_part", "period_of_hamiltonian"]
+    _Of: TypeAlias = Hamiltonian | Lagrangian
+
+__all__ = [
+    "action_by_return",
+    "action_of_hamiltonian",
+    "gauge_part",
+    "period_by_return",
+    "period_of_hamiltonian",
+]
 
 _RTOL = 1e-15
 _OF_A_ROTATION = "the period of a rotation is period(turn=2π)"
@@ -45,7 +53,7 @@ _MOST_PANELS = 4096
 def period_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
     """Give the period of a motion of one coordinate."""
     lagrangian = _by_velocity(system)
-    return float(_by_return(system, turn)[0] if lagrangian is None else lagrangian._oscillation(turn)[2])
+    return period_by_return(system, turn) if lagrangian is None else float(lagrangian._oscillation(turn)[2])
 
 
 def action_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
@@ -53,6 +61,16 @@ def action_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
     lagrangian = _by_velocity(system)
     if lagrangian is not None:
         return float(lagrangian._oscillation(turn)[3])
+    return action_by_return(system, turn)
+
+
+def period_by_return(system: _Of, turn: float | None) -> float:
+    """Give the period of a motion of one coordinate, of any function."""
+    return float(_by_return(system, turn)[0])
+
+
+def action_by_return(system: _Of, turn: float | None) -> float:
+    """Give its action variable."""
     return _action(system, system._start(), _by_return(system, turn)[1], turn)
 
 
@@ -88,7 +106,7 @@ def gauge_part(system: Lagrangian, turn: float) -> float:
     )
 
 
-def _by_return(system: Hamiltonian, turn: float | None) -> tuple[float, float]:
+def _by_return(system: _Of, turn: float | None) -> tuple[float, float]:
     """Give the period, and the time along which the coordinate goes the way of the turn."""
     start = system._start()
     rates = _rates(system, start)
@@ -109,21 +127,28 @@ def _by_return(system: Hamiltonian, turn: float | None) -> tuple[float, float]:
     return period, period * forward
 
 
-def _rates(system: Hamiltonian, state: NDArray[np.float64]) -> NDArray[np.float64]:
-    found: NDArray[np.float64] = system._model.rates(np.array([system.t0]), state[None, :], system._values[None, :])[0]
+def _rates(system: _Of, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    found: NDArray[np.float64] = _rates_at(system, np.array([system.t0]), state[None, :])[0]
     return found
 
 
-def _refuse_unless_it_repeats(system: Hamiltonian, start: NDArray[np.float64], turn: float) -> None:
-    places, momenta = np.meshgrid(start[0] + turn * np.arange(8) / 8, start[1] * np.array([1.0, 0.7, 1.3]))
+def _rates_at(system: _Of, times: NDArray[np.float64], states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rates (N, 2) of both numbers of states (N, 2)."""
+    found: NDArray[np.float64] = system._model.rates(times, states, system._values[None, :])
+    return np.stack([states[:, 1], found[:, 0]], axis=1) if found.shape[1] == 1 else found
+
+
+def _refuse_unless_it_repeats(system: _Of, start: NDArray[np.float64], turn: float) -> None:
+    # No faster: a velocity may have a limit.
+    places, momenta = np.meshgrid(start[0] + turn * np.arange(8) / 8, start[1] * np.array([1.0, 0.7, 0.4]))
     here = np.stack([places.ravel(), momenta.ravel()], axis=1)
     times, far = np.full(len(here), system.t0), np.array([turn, 0.0])
-    first, second = (system._model.rates(times, x, system._values[None, :]) for x in (here, here + far))
+    first, second = (_rates_at(system, times, x) for x in (here, here + far))
     if (np.abs(first - second) > _REPEATS * np.abs(first).max(axis=0)).any():
         raise InvalidInput("turn", f"the energy does not repeat after {turn:g}, so the motion has no period of that")
 
 
-def _return_time(system: Hamiltonian, start: NDArray[np.float64], turn: float | None, forward: float) -> float:
+def _return_time(system: _Of, start: NDArray[np.float64], turn: float | None, forward: float) -> float:
     rates = _rates(system, start)
     span = _shortest_time(system, start, rates)
     far = np.zeros(2) if turn is None else np.array([turn, 0.0])
@@ -144,7 +169,7 @@ def _return_time(system: Hamiltonian, start: NDArray[np.float64], turn: float | 
 
 
 def _crossings(
-    system: Hamiltonian, start: NDArray[np.float64], rates: NDArray[np.float64], far: NDArray[np.float64], span: float
+    system: _Of, start: NDArray[np.float64], rates: NDArray[np.float64], far: NDArray[np.float64], span: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Give times since the start and states where the flow passes a line across it there, and how far it goes."""
     end = system.t0 + span
@@ -166,17 +191,19 @@ def _crossings(
     return times, states, np.ptp(along, axis=0) + np.abs(along).max(axis=0)
 
 
-def _shortest_time(system: Hamiltonian, start: NDArray[np.float64], rates: NDArray[np.float64]) -> float:
+def _shortest_time(system: _Of, start: NDArray[np.float64], rates: NDArray[np.float64]) -> float:
     nodes, second = system._model.expressions("curvatures")
     found = system._model.evaluate(nodes, second, np.array([system.t0]), start[None, :], system._values[None, :])[0]
-    frequency = np.sqrt(abs(found[0] * found[3] - found[1] * found[2]))
+    with np.errstate(all="ignore"):
+        hamiltonian = system._source.kind == "hamiltonian"
+        frequency = np.sqrt(abs(found[0] * found[3] - found[1] * found[2] if hamiltonian else found[0] / found[3]))
     if np.isfinite(frequency) and frequency > 0.0:
         return float(1.0 / frequency)
     times = [abs(value / rate) for value, rate in zip(start, rates, strict=True) if value and rate]
     return float(min(times)) if times else float(1.0 / np.abs(rates).max())
 
 
-def _action(system: Hamiltonian, start: NDArray[np.float64], span: float, turn: float | None) -> float:
+def _action(system: _Of, start: NDArray[np.float64], span: float, turn: float | None) -> float:
     """Give ∮ p dq / 2π: along the motion of a rotation, the area of an oscillation."""
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     center = None
@@ -188,11 +215,14 @@ def _action(system: Hamiltonian, start: NDArray[np.float64], span: float, turn: 
         parts = (middle + half * nodes).ravel()
         times = system.t0 + span * np.append(0.0, parts)
         states = _states(system, start, times)
-        rates = system._model.rates(times[1:], states, system._values[None, :])
+        rates = _rates_at(system, times[1:], states)
+        momenta = states[:, 1]
+        if system._source.kind == "lagrangian":
+            momenta = system._model.columns(times[1:], states, system._values[None, :])[:, 0]
         if center is None:
             # ∮ dq = 0: what a large constant momentum would cancel is left out.
-            center = float(0.5 * (states[:, 1].max() + states[:, 1].min())) if turn is None else 0.0
-        found: NDArray[np.float64] = ((states[:, 1] - center) * rates[:, 0]).reshape(-1, _GAUSS) @ weights
+            center = float(0.5 * (momenta.max() + momenta.min())) if turn is None else 0.0
+        found: NDArray[np.float64] = ((momenta - center) * rates[:, 0]).reshape(-1, _GAUSS) @ weights
         return found * half[:, 0] * abs(span)
 
     ends = np.linspace(0.0, 1.0, _PANELS + 1)
@@ -212,7 +242,7 @@ def _action(system: Hamiltonian, start: NDArray[np.float64], span: float, turn: 
     raise ConvergenceError("the action is not resolved: the motion turns too sharply, or the function has kinks")
 
 
-def _states(system: Hamiltonian, start: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def _states(system: _Of, start: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
     """Give states at times after the first, which is the start's; the times need no order."""
     order = np.argsort(np.abs(times[1:] - times[0]))
     asked, _ = system._asked(times[1:][order], "gauss16", _RTOL, None, None)

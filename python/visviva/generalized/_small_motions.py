@@ -11,7 +11,13 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import Linearization, linearization
 from visviva.generalized._equilibria import Equilibrium, equilibria
-from visviva.generalized._returns import action_of_hamiltonian, gauge_part, period_of_hamiltonian
+from visviva.generalized._returns import (
+    action_by_return,
+    action_of_hamiltonian,
+    gauge_part,
+    period_by_return,
+    period_of_hamiltonian,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -160,8 +166,8 @@ class SmallMotions:
         of let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up
         to it.
         Landau & Lifshitz, Mechanics, 3rd ed., (11.5).
-        Of a Hamiltonian that is not quadratic in the momentum it is the time of return along the motion itself, to
-        1e-12 where the function is smooth.
+        Of a Hamiltonian that is not quadratic in the momentum, or a Lagrangian that is not in the velocity, as a
+        relativistic one, it is the time of return along the motion itself, to 1e-12 where the function is smooth.
 
         Examples
         --------
@@ -172,6 +178,8 @@ class SmallMotions:
         turn = self._checked_turn(turn)
         if self._source.kind == "hamiltonian":
             return period_of_hamiltonian(self, turn)
+        if self._needs_return():
+            return period_by_return(self, turn)
         return float(self._oscillation(turn)[2])
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
@@ -208,6 +216,8 @@ class SmallMotions:
         turn = self._checked_turn(turn)
         if self._source.kind == "hamiltonian":
             return action_of_hamiltonian(self, turn)
+        if self._needs_return():
+            return action_by_return(self, turn)
         return float(self._oscillation(turn)[3])
 
     def _checked_turn(self: Any, turn: float | None) -> float | None:
@@ -215,6 +225,10 @@ class SmallMotions:
         if turn is not None and not number("turn", turn):
             raise InvalidInput("turn", "expected how far the coordinate goes in a period, as 2π, got 0")
         return None if turn is None else number("turn", turn)
+
+    def _needs_return(self: Any) -> bool:
+        """Whether it is a Lagrangian of one coordinate that no quadrature of a slope knows."""
+        return len(self.coordinates) == 1 and not self._structure["quadratic"] and not self._constraints()
 
     def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
         low, high, period, action = self._model.oscillation(self.t0, self._start(), self._values, turn)

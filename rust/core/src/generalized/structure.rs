@@ -35,6 +35,8 @@ pub struct Structure {
     pub separable: bool,
     /// Whether something has a kink: |x| = √(x²) of what changes with the state, where it passes zero.
     pub kinks: bool,
+    /// Whether the kinetic energy is quadratic in velocities: the mass matrix does not have them.
+    pub quadratic: bool,
     /// Operations of the right-hand side.
     pub operations: usize,
 }
@@ -75,8 +77,15 @@ impl Structure {
             mass: Self::mass_matrix(model),
             separable: matches!(model.form, crate::ode::system::Form::SecondOrder(_)) && !needs.velocity,
             kinks: !Self::turning(source).is_empty(),
+            quadratic: Self::is_quadratic(model),
             operations: model.code.operations(),
         }
+    }
+
+    fn is_quadratic(model: &Model) -> bool {
+        let n = model.source.coordinates as u32;
+        let entries: Vec<Id> = model.mass.iter().flatten().copied().collect();
+        !model.source.graph.any(&entries, |node| matches!(node, Node::Variable(index) if *index >= n))
     }
 
     /// What absolute values are taken of: x of |x| = √(x²), where it changes with the state.

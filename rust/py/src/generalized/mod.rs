@@ -117,6 +117,7 @@ impl GeneralizedModel {
         result.set_item("linear", self.linear.is_some())?;
         result.set_item("separable", found.separable)?;
         result.set_item("kinks", found.kinks)?;
+        result.set_item("quadratic", found.quadratic)?;
         result.set_item("operations", found.operations)?;
         Ok(result)
     }

@@ -1,0 +1,88 @@
+"""Why a motion cannot start where it is to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["refuse_a_start"]
+
+#: A state beside the start: by this part of each number, or by this where it is 0.
+_BESIDE = 1e-3
+
+
+def refuse_a_start(system: Lagrangian | Hamiltonian, state: NDArray[np.float64], what: str) -> NoReturn:
+    """Refuse a start where rates are no numbers, with the reason.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        In any case.
+    """
+    n = len(system.coordinates)
+    places, second = state[:n], state[n:]
+    moving = np.concatenate([places, np.where(second == 0.0, 1.0, second)])
+    beside = np.concatenate([np.where(state == 0.0, _BESIDE, state * (1.0 + _BESIDE))])
+    if system._source.kind == "lagrangian" and _has_rates(system, moving):
+        if _is_massless(system, state):
+            raise InvalidInput(
+                "velocity",
+                f"{what} at a velocity of 0: the mass matrix, the second derivatives of L by velocities, is "
+                "singular there, and no force has an acceleration; start with a velocity",
+            )
+        raise InvalidInput(
+            "velocity",
+            f"{what} at a velocity of 0: a force along v/|v| (dry friction) has no direction there; start with a "
+            "velocity, or write np.tanh(v/width) for v/|v|",
+        )
+    if _overflows(system, state) and _overflows(system, beside):
+        raise InvalidInput(
+            "position",
+            f"{what} at the start: what it is made of is beyond 1.8e308, there and around it; start where it is "
+            "less, or take other units",
+        )
+    if system._source.kind == "hamiltonian":
+        raise InvalidInput("position", f"{what} at the start: a singularity of H; start away from it")
+    raise InvalidInput(
+        "position",
+        f"{what} at the start: a singularity of these coordinates, or a mass matrix that is singular there; start away "
+        "from it or take other coordinates",
+    )
+
+
+def _rates(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    found: NDArray[np.float64] = system._model.rates(np.array([system.t0]), state[None, :], system._values[None, :])[0]
+    return found
+
+
+def _has_rates(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> bool:
+    return bool(np.isfinite(_rates(system, state)).all())
+
+
+def _values(system: Lagrangian | Hamiltonian, name: str, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    nodes, roots = system._model.expressions(name)
+    found: NDArray[np.float64] = system._model.evaluate(
+        nodes, roots, np.array([system.t0]), state[None, :], system._values[None, :]
+    )[0]
+    return found
+
+
+def _is_massless(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> bool:
+    """Whether the mass matrix of a Lagrangian is singular at a state."""
+    n = len(system.coordinates)
+    mass = _values(system, "mass_matrix", state).reshape(n, n)
+    return bool(np.isfinite(mass).all() and np.linalg.matrix_rank(mass) < n)
+
+
+def _overflows(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> bool:
+    """Whether the function or its slopes are infinite at a state."""
+    return bool(np.isinf(np.concatenate([_values(system, name, state) for name in ("function", "slopes")])).any())
