@@ -53,7 +53,9 @@ def Custom(  # noqa: N802
         hundredth and a hundred times the largest abs(V) of the piece, so that no jump passes, and the sum as no less
         than 1e-16 of the largest abs(V) within the octave, as a cutoff comes to zero. It is met at each of 28 places of
         every piece where its polynomial of degree 13 was not made; pieces are cut in two until it is, and reach over an
-        octave at most.
+        octave at most. In case something hides between, it is then looked at in 4096 places to each factor of e, down
+        to a millionth of r_max, and met to ten times as much there: what is narrower than a 4096th of its distance may
+        still be passed over.
     parameters : mapping of symbol or str to float, optional
         The values of what else than r stands in a formula.
 

@@ -236,9 +236,13 @@ def test_derivatives_where_the_angle_is_no_parabola(potential: V.Potential, b: f
     assert float(found.derivative) == pytest.approx(slope, rel=2e-3, abs=20.0 * 4e-16 / h)
 
 
-@pytest.mark.parametrize("share", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
-def test_transport_of_a_weak_square_well(share: float) -> None:
-    """Its largest angles are at its rim, on a part `share` of it: that was cut off, 2e-4 of all at 1e-8."""
+@pytest.mark.parametrize("radius", [1.0, 1.7])
+@pytest.mark.parametrize("share", [1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
+def test_transport_of_a_weak_square_well(share: float, radius: float) -> None:
+    """Its largest angles are at its rim, on a part `share` of it: that was cut off, 2e-4 of all at 1e-8.
+
+    Then impact parameters were rounded there, which was 2e-9 of all.
+    """
     with mp.workdps(30):
         index = mp.sqrt(1 + mp.mpf(share))
 
@@ -246,6 +250,6 @@ def test_transport_of_a_weak_square_well(share: float) -> None:
             return 2 * mp.sin(mp.asin(x) - mp.asin(x / index)) ** 2 * x
 
         marks = [0, mp.mpf("0.5"), *(1 - mp.mpf(10) ** -k for k in range(1, 16)), 1]
-        exact = 2 * mp.pi * mp.quad(part, marks)
-    found = s.transport_cross_section(V.SquareWell(share, 1.0), energy=1.0)
-    assert float(found) == pytest.approx(float(exact), rel=1e-9)
+        exact = 2 * mp.pi * mp.quad(part, marks) * mp.mpf(radius) ** 2
+    found = s.transport_cross_section(V.SquareWell(share, radius), energy=1.0)
+    assert float(found) == pytest.approx(float(exact), rel=1e-10, abs=0.0)

@@ -3,6 +3,7 @@
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::potentials::features::Features;
 use crate::potentials::{Potential, near_one};
 use crate::units::Units;
 use std::sync::Arc;
@@ -129,6 +130,9 @@ impl Field {
         let mut places: Vec<f64> = about(1.0, OCTAVES, 4).collect();
         for term in &self.terms {
             let lengths = term.lengths();
+            if term.hidden().is_some() {
+                places.extend(Features::of(term.as_ref()).places);
+            }
             if term.domain().is_some() {
                 for pair in lengths.windows(2) {
                     let part = |k: i32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(PARTS);

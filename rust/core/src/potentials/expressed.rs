@@ -4,10 +4,12 @@
 //! something happens in it (a zero of its force or its curvature, the range of a decay) no declaration says, so it is looked
 //! for; and it is compiled in a unit of length in which that is near one, lest a power of a derivative leave the range.
 
+use super::features::Hidden;
 use super::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use super::{Analytic, Formula, Numbers, PotentialDeclaration, hold};
 use crate::error::{Error, Result};
 use crate::expressions::curve::{Argument, Curve};
+use crate::expressions::intervals::Intervals;
 use crate::expressions::table::{Parameters, Variables, read};
 use crate::numerics::elementary::Exponential;
 use crate::numerics::power_of_two::scale;
@@ -21,6 +23,8 @@ use std::sync::{Arc, OnceLock};
 pub struct Expressed {
     /// v of lengths in its own unit.
     curve: Arc<Curve>,
+    /// Its bounds; nothing of what is no number.
+    intervals: Option<Arc<Intervals>>,
     /// That unit, a power of two, as a part of `length`.
     unit: f64,
     /// What v is made of, as numbers.
@@ -105,20 +109,23 @@ impl Expressed {
             let variables = Variables { count: 1, unit };
             let (graph, roots) = read(nodes, 1, variables, Parameters::Told(parameters))?;
             let missing = || Error::Internal("an expression without a node".to_owned());
-            Curve::new(graph, *roots.first().ok_or_else(missing)?)
+            let root = *roots.first().ok_or_else(missing)?;
+            Ok((Curve::new(graph.clone(), root)?, Intervals::new(graph, vec![root])))
         };
         let plain = curve(1.0)?;
-        let exponent = first_bend(&plain);
+        let exponent = first_bend(&plain.0);
         let unit = scale(1.0, exponent);
-        let curve = if exponent == 0 { plain } else { curve(unit)? };
+        let (curve, intervals) = if exponent == 0 { plain } else { curve(unit)? };
         let made_from = nodes.iter().chain(parameters).map(|x| x.to_bits()).collect();
-        Ok(Self::of(curve, unit, made_from, [length.number(), energy.number()]))
+        let made = Self::of(curve, unit, made_from, [length.number(), energy.number()]);
+        Ok(Self { intervals: Some(Arc::new(intervals)), ..made })
     }
 
     fn of(curve: Curve, unit: f64, made_from: Arc<[u64]>, [length, energy]: [f64; 2]) -> Self {
         let [value, slope, second] = 0.0_f64.all_on(&curve);
         let singular = !(value.is_finite() && slope.is_finite() && second.is_finite());
-        Self { curve: Arc::new(curve), unit, made_from, length, energy, singular, features: Arc::default() }
+        let (curve, features) = (Arc::new(curve), Arc::default());
+        Self { curve, intervals: None, unit, made_from, length, energy, singular, features }
     }
 
     /// Where the derivative of v or its second one change their sign, and where it first is no power of r any more. What
@@ -194,6 +201,11 @@ impl Formula for Expressed {
     fn lengths(&self) -> Option<Vec<f64>> {
         let lengths = self.features().iter().map(|r| r * self.unit * self.length);
         Some(lengths.filter(|length| *length > 0.0 && length.is_finite()).collect())
+    }
+
+    fn hidden(&self) -> Option<Hidden> {
+        let [per_length, energy, ..] = self.numbers();
+        self.intervals.as_ref().map(|intervals| Hidden::new(Intervals::clone(intervals), per_length, energy))
     }
 
     #[inline(always)]

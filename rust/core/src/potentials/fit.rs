@@ -9,8 +9,10 @@ use super::hermite::quintic;
 use super::piecewise_polynomial::TERMS;
 use crate::error::{Error, Result};
 use crate::numerics::angles::cos;
+use crate::numerics::elementary::{Exponential, ln};
 use crate::words::number;
 use core::f64::consts::PI;
+use core::ops::Range;
 
 /// Pieces at most.
 const PIECES: usize = 4096;
@@ -28,6 +30,11 @@ const JUMP: f64 = 100.0;
 const FLOOR: f64 = 0.01;
 /// As that, of the octave that the piece is in: a smooth cutoff comes to zero, where nothing is met relative to itself.
 const FLOOR_OF_OCTAVE: f64 = 1e-16;
+/// How many more distances there are at which pieces are looked at, to each e-fold, and from which part of the range on.
+const LOOKS: f64 = 4096.0;
+const LOOKED_FROM: f64 = 1.0 / (1 << 20) as f64;
+/// There they may be off by so many tolerances: it is looked for what hides, not for rounding.
+const LOOSER: f64 = 10.0;
 /// Tolerances that can be met where second derivatives are made to agree, and are of use.
 const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-12..=1e-4;
 
@@ -102,13 +109,24 @@ pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64, quantities:
     for piece in &mut pieces {
         piece.octave = piece.largest();
     }
+    let mut between: Option<Between> = None;
     loop {
         let joined = joined(&pieces);
         let errors: Vec<f64> = pieces.iter().zip(&joined).map(|(piece, p)| error(piece, p)).collect();
         let worst = errors.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &0.0));
         // What is no number is worse than any; over more than an octave the checks do not look at the near end.
         let wide = |at: &usize| errors[*at].is_nan() || errors[*at] > tolerance || is_long(pieces[*at].ends);
-        let split: Vec<usize> = (0..pieces.len()).filter(wide).collect();
+        let mut split: Vec<usize> = (0..pieces.len()).filter(wide).collect();
+        if split.is_empty() {
+            let between = match &between {
+                Some(between) => between,
+                None => between.insert(Between::of(sample, range, argument)?),
+            };
+            split = between.missed(&pieces, &joined, tolerance);
+            for &at in &split {
+                pieces[at].octave = pieces[at].octave.max(between.largest(&pieces[at]));
+            }
+        }
         if split.is_empty() {
             let breaks = pieces.iter().map(|piece| piece.ends[0]).chain([high]).collect();
             return Ok(Fit { breaks, coefficients: joined.concat(), error: *worst.1 });
@@ -155,6 +173,43 @@ pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64, quantities:
     }
 }
 
+/// Values at many distances, in case something narrow hides from the checks of long pieces.
+struct Between {
+    r: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Between {
+    fn of(sample: &mut Sample<'_>, [low, high]: [f64; 2], argument: &str) -> Result<Self> {
+        let first = low.max(high * LOOKED_FROM);
+        let count = (ln(high / first) * LOOKS).ceil().max(1.0);
+        let place = |k: u32| first * Exponential::exp(ln(high / first) * (f64::from(k) + 0.5) / count);
+        let r: Vec<f64> = (0..count as u32).map(place).filter(|r| *r > low && *r < high).collect();
+        let values = finite(sample, &r, argument)?;
+        Ok(Self { r, values })
+    }
+    /// The pieces that are off there, by more than where they are checked.
+    fn missed(&self, pieces: &[Piece], joined: &[[f64; TERMS]], tolerance: f64) -> Vec<usize> {
+        let of = |at: &usize| {
+            let (piece, p, largest) = (&pieces[*at], &joined[*at], pieces[*at].largest());
+            let off =
+                |k: usize| difference(piece, p, largest, [self.r[k], self.values[k]]) > LOOSER * tolerance;
+            self.inside(piece).any(off)
+        };
+        (0..pieces.len()).filter(of).collect()
+    }
+    /// The largest |V| within an octave of a piece.
+    fn largest(&self, piece: &Piece) -> f64 {
+        let [from, to] = [0.5 * piece.ends[0], 2.0 * piece.ends[1]];
+        let inside = self.r.partition_point(|r| *r < from)..self.r.partition_point(|r| *r < to);
+        inside.fold(0.0, |most, k| most.max(self.values[k].abs()))
+    }
+    fn inside(&self, piece: &Piece) -> Range<usize> {
+        let [from, to] = piece.ends.map(|end| self.r.partition_point(|r| *r < end));
+        from..to
+    }
+}
+
 /// Whether it reaches over more than an octave.
 fn is_long([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high > 2.0 * low
@@ -189,17 +244,7 @@ fn made(sample: &mut Sample<'_>, ranges: &[[f64; 2]], argument: &str) -> Result<
         r.push(range[0]);
         r.extend((0..CHECKS * TERMS).map(|at| place(range, check(at))));
     }
-    let values = sample(&r)?;
-    if values.len() != r.len() {
-        return Err(Error::Internal("a function gave another number of values".to_owned()));
-    }
-    if let Some(at) = values.iter().position(|v| !v.is_finite()) {
-        let (v, r) = (number(values[at]), number(r[at]));
-        return Err(Error::invalid(
-            "function",
-            format!("expected finite values, got {v} at {argument} = {r}"),
-        ));
-    }
+    let values = finite(sample, &r, argument)?;
     let of = |(values, &ends): (&[f64], &[f64; 2])| {
         let (nodes, checks) = values.split_at(TERMS);
         Piece {
@@ -211,6 +256,21 @@ fn made(sample: &mut Sample<'_>, ranges: &[[f64; 2]], argument: &str) -> Result<
         }
     };
     Ok(values.chunks((1 + CHECKS) * TERMS).zip(ranges).map(of).collect())
+}
+
+/// The values of a function, if they are numbers.
+fn finite(sample: &mut Sample<'_>, r: &[f64], argument: &str) -> Result<Vec<f64>> {
+    let values = sample(r)?;
+    if values.len() != r.len() {
+        return Err(Error::Internal("a function gave another number of values".to_owned()));
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(values),
+        Some(at) => {
+            let (v, r) = (number(values[at]), number(r[at]));
+            Err(Error::invalid("function", format!("expected finite values, got {v} at {argument} = {r}")))
+        }
+    }
 }
 
 /// The coefficients of tᵏ of the polynomial through values at the nodes.
@@ -296,21 +356,25 @@ pub(crate) fn centered(own: [f64; TERMS], of_unit_interval: [f64; 6]) -> [f64; T
 
 /// The largest relative difference in a piece.
 fn error(piece: &Piece, p: &[f64; TERMS]) -> f64 {
-    let per = 2.0 / (piece.ends[1] - piece.ends[0]);
-    let largest = piece.largest();
-    let least = (FLOOR_OF_OCTAVE * piece.octave).max(SMALL);
-    let mut worst = 0.0_f64;
+    let (mut worst, largest) = (0.0_f64, piece.largest());
     for (at, value) in piece.checks.iter().enumerate() {
-        let r = place(piece.ends, check(at));
-        // As it will be evaluated.
-        let t = (r - 0.5 * (piece.ends[0] + piece.ends[1])) * per;
-        let [found, slope, _] = derivatives(p, t);
-        let change = (piece.ends[1] * slope * per).abs();
-        let size = (value.abs() + change.min(JUMP * largest).max(FLOOR * largest)).max(least);
-        let error = (found - value).abs() / size;
+        let error = difference(piece, p, largest, [place(piece.ends, check(at)), *value]);
         worst = if error <= worst { worst } else { error };
     }
     worst
+}
+
+/// How far a piece, whose largest value that is, is from a value at a distance, relative to |V| + r |dV/dr| as
+/// [`Fit::error`] takes it.
+fn difference(piece: &Piece, p: &[f64; TERMS], largest: f64, [r, value]: [f64; 2]) -> f64 {
+    let per = 2.0 / (piece.ends[1] - piece.ends[0]);
+    let least = (FLOOR_OF_OCTAVE * piece.octave).max(SMALL);
+    // As it will be evaluated.
+    let t = (r - 0.5 * (piece.ends[0] + piece.ends[1])) * per;
+    let [found, slope, _] = derivatives(p, t);
+    let change = (piece.ends[1] * slope * per).abs();
+    let size = (value.abs() + change.min(JUMP * largest).max(FLOOR * largest)).max(least);
+    (found - value).abs() / size
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 pub mod buckingham;
 pub mod coulomb;
 pub mod expressed;
+pub mod features;
 pub mod fit;
 pub mod hard_sphere;
 mod hermite;
@@ -38,6 +39,7 @@ use crate::numerics::power_of_two::exponent;
 use crate::numerics::rows::Lookup;
 use crate::units::Units;
 use core::fmt::Debug;
+use features::Hidden;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
 use kernels::{all_rows_tier, force_rows_tier, value_rows_tier};
 use parameters::{Declaration, Value};
@@ -126,6 +128,10 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn breaks(&self) -> Vec<f64> {
         Vec::new()
     }
+    /// What samples of it may not show, if it is not known to show all.
+    fn hidden(&self) -> Option<Hidden> {
+        None
+    }
 }
 
 /// A potential energy as the rest of the core holds it.
@@ -169,6 +175,8 @@ pub trait Potential: Debug + Send + Sync {
     fn domain(&self) -> Option<(f64, f64)>;
     /// The distances at which it is not smooth, ascending.
     fn breaks(&self) -> Vec<f64>;
+    /// What samples of it may not show, if it is not known to show all.
+    fn hidden(&self) -> Option<Hidden>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
     /// Adds the forces between the bodies of each lane's system, partners in order of index.
@@ -300,6 +308,9 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn breaks(&self) -> Vec<f64> {
         self.formula.breaks()
+    }
+    fn hidden(&self) -> Option<Hidden> {
+        self.formula.hidden()
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);

@@ -26,6 +26,9 @@ const PER_OCTAVE: i32 = 12;
 /// Samples towards an edge, each this much nearer than the one before.
 const TOWARDS_EDGE: i32 = 56;
 const NEARER: f64 = 0.562_341_325_190_349; // 10^(−1/4)
+/// Samples between two bends that are so near.
+const PER_BEND: i32 = 4;
+const BETWEEN: f64 = 1.0 / 16.0;
 /// Angles below this are not looked at.
 const SMALLEST: f64 = 1e-13;
 /// Halvings and secants until a root has all its digits.
@@ -70,6 +73,8 @@ pub struct Structure<'a> {
     /// Monotone between neighbours of one stretch.
     stretches: Vec<Vec<Sample>>,
     edges: Vec<Edge>,
+    /// [`Deflector::bends`].
+    bends: Vec<f64>,
     rainbows: Vec<Rainbow>,
 }
 
@@ -81,7 +86,9 @@ impl<'a> Structure<'a> {
     pub fn new(deflector: &'a Deflector, energy: f64, ticker: &mut Ticker<'_>) -> Result<Self> {
         let edges = deflector.edges(energy);
         let length = deflector.length(energy);
-        let mut made = Self { deflector, energy, length, stretches: Vec::new(), edges, rainbows: Vec::new() };
+        let bends = deflector.bends(energy);
+        let mut made =
+            Self { deflector, energy, length, stretches: Vec::new(), edges, bends, rainbows: Vec::new() };
         let ends: Vec<f64> = [0.0]
             .into_iter()
             .chain(made.edges.iter().map(|edge| edge.impact_parameter))
@@ -148,7 +155,8 @@ impl<'a> Structure<'a> {
     }
     /// Samples between two edges, cut where the derivative changes its sign.
     fn cut(&mut self, ends: [f64; 2], ticker: &mut Ticker<'_>) -> Result<()> {
-        let places = places(ends, &self.edges, self.length);
+        let places = places(ends, &self.edges, &self.bends, self.length);
+        let looked_from = self.bends.last().copied().unwrap_or(0.0).max(4.0 * self.length);
         let energies = vec![self.energy; places.len()];
         let found = self.deflector.deflect(&energies, &places, true, 1, ticker)?;
         let mut stretch: Vec<Sample> = Vec::new();
@@ -167,7 +175,7 @@ impl<'a> Structure<'a> {
             }
             stretch.push(next);
             // What is still to come is even less.
-            if next.angle.abs() < SMALLEST && next.b > 4.0 * self.length && ends[1] == f64::INFINITY {
+            if next.angle.abs() < SMALLEST && next.b > looked_from && ends[1] == f64::INFINITY {
                 break;
             }
         }
@@ -257,8 +265,8 @@ fn false_position(places: [f64; 2], values: [f64; 2]) -> f64 {
     if line > low && line < high { line } else { 0.5 * (low + high) }
 }
 
-/// Impact parameters to look at between two ends: to every octave, and ever nearer to orbits.
-fn places(ends: [f64; 2], edges: &[Edge], length: f64) -> Vec<f64> {
+/// Impact parameters to look at between two ends: to every octave, ever nearer to orbits, and about features.
+fn places(ends: [f64; 2], edges: &[Edge], bends: &[f64], length: f64) -> Vec<f64> {
     let [low, high] = ends;
     let octaves = (-OCTAVES * PER_OCTAVE..=OCTAVES * PER_OCTAVE)
         .map(|k| length * Exponential::exp(f64::from(k) * LN_2 / f64::from(PER_OCTAVE)));
@@ -278,6 +286,12 @@ fn places(ends: [f64; 2], edges: &[Edge], length: f64) -> Vec<f64> {
         places.push(0.0);
         // Also where there is one edge only, not far from zero.
         places.extend((1..16).map(|k| reach.min(length) * f64::from(k) / 16.0));
+    }
+    places.extend(bends);
+    for pair in bends.windows(2).filter(|pair| pair[1] - pair[0] < BETWEEN * pair[1]) {
+        places.extend(
+            (1..PER_BEND).map(|k| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(PER_BEND)),
+        );
     }
     places.retain(|b| *b >= low && *b < high);
     places.sort_by(f64::total_cmp);

@@ -6,14 +6,16 @@
 use super::super::deflection::{Deflector, Edge, Status};
 use super::super::kronrod::{self, POINTS};
 use crate::numerics::angles::sin;
+use crate::numerics::double_double::two_sum;
 use crate::numerics::elementary::{Exponential, ln};
 use crate::parallel::{Ticker, for_chunks};
 use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::PI;
 
-/// Rounds of halving.
+/// Rounds of halving, and intervals at most: what is not told by then is left as it is.
 const ROUNDS: usize = 40;
+const MOST_INTERVALS: usize = 6000;
 /// The tolerance of a cross section, relative.
 const TOLERANCE: f64 = 1e-10;
 /// That of those that are averaged, and of the average.
@@ -39,23 +41,56 @@ enum Way {
     Far(f64),
     /// b = edge + side · e^t.
     Near(f64, f64),
+    /// b = edge − t.
+    Beside(f64),
 }
 
 impl Way {
-    /// b and db/dt.
-    fn at(self, t: f64) -> (f64, f64) {
+    /// b, what it is rounded by, and db/dt.
+    fn at(self, t: f64) -> Place {
         match self {
-            Self::Straight => (t, 1.0),
+            Self::Straight => Place { b: t, rest: 0.0, weight: 1.0 },
             Self::Far(scale) => {
                 let b = scale * Exponential::exp(t);
-                (b, b)
+                Place { b, rest: 0.0, weight: b }
             }
             Self::Near(edge, side) => {
                 let off = Exponential::exp(t);
-                (edge + side * off, off)
+                let (b, rest) = two_sum(edge, side * off);
+                Place { b, rest, weight: off }
+            }
+            Self::Beside(edge) => {
+                let (b, rest) = two_sum(edge, -t);
+                Place { b, rest, weight: 1.0 }
             }
         }
     }
+    /// Which t makes an impact parameter, if one does.
+    fn place(self, b: f64) -> f64 {
+        match self {
+            Self::Straight => b,
+            Self::Far(scale) => ln(b / scale),
+            Self::Near(edge, side) if side * (b - edge) > 0.0 => ln(side * (b - edge)),
+            Self::Near(..) => f64::NAN,
+            Self::Beside(edge) => edge - b,
+        }
+    }
+}
+
+/// An impact parameter of an integral.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    b: f64,
+    rest: f64,
+    weight: f64,
+}
+
+/// The integral over an interval, how far it may be off, and by how much the angles in it make it so.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    value: f64,
+    off: f64,
+    noise: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -107,21 +142,23 @@ fn transport_to(
     }
     let mut pending = intervals(deflector, energy, &edges);
     let (mut sum, mut error) = (0.0, 0.0);
-    let mut done: Vec<[f64; 2]> = Vec::new();
+    let mut done: Vec<Part> = Vec::new();
     for round in 0..ROUNDS {
         let found = evaluate(deflector, energy, l, &pending, threads, ticker)?;
-        let whole: f64 = done.iter().chain(&found).map(|[value, _]| value.abs()).sum();
+        let whole: f64 = done.iter().chain(&found).map(|part| part.value.abs()).sum();
+        let last = round + 1 == ROUNDS || done.len() + pending.len() > MOST_INTERVALS;
         let mut next = Vec::new();
-        for (interval, [value, off]) in pending.iter().zip(found) {
+        for (interval, part) in pending.iter().zip(found) {
             let [from, to] = interval.ends;
             let middle = 0.5 * (from + to);
-            if off <= tolerance * whole * 1e-3
-                || off <= tolerance * value.abs() * 1e-2
-                || round + 1 == ROUNDS
+            if part.off <= tolerance * whole * 1e-3
+                || part.off <= tolerance * part.value.abs() * 1e-2
+                || part.off <= part.noise
+                || last
                 || middle <= from
                 || middle >= to
             {
-                done.push([value, off]);
+                done.push(part);
             } else {
                 next.push(Interval { ends: [from, middle], ..*interval });
                 next.push(Interval { ends: [middle, to], ..*interval });
@@ -132,9 +169,9 @@ fn transport_to(
             break;
         }
     }
-    for [value, off] in done {
-        sum += value;
-        error += off;
+    for part in done {
+        sum += part.value;
+        error += part.off + part.noise;
     }
     if error > 1e-6 * sum {
         let message = format!(
@@ -154,12 +191,22 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
         [0.0].into_iter().chain(edges.iter().map(|edge| edge.impact_parameter)).collect();
     ends.retain(|b| *b < range);
     ends.push(range);
+    let bends = deflector.bends(energy);
     let mut all = Vec::new();
     let mut add = |way: Way, from: f64, to: f64| {
-        let parts = if matches!(way, Way::Straight) { 4.0 } else { ((to - from) / LONGEST).ceil().max(1.0) };
-        for part in 0..parts as usize {
-            let at = |k: usize| (to - from).mul_add(k as f64 / parts, from);
-            all.push(Interval { way, ends: [at(part), at(part + 1)] });
+        let inside = bends.iter().map(|b| way.place(*b)).filter(|t| *t > from && *t < to);
+        let mut cuts: Vec<f64> = [from, to].into_iter().chain(inside).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let longest =
+            if matches!(way, Way::Straight | Way::Beside(_)) { 0.25 * (to - from) } else { LONGEST };
+        for pair in cuts.windows(2) {
+            let length = pair[1] - pair[0];
+            let parts = (length / longest).ceil().max(1.0);
+            for part in 0..parts as usize {
+                let at = |k: usize| length.mul_add(k as f64 / parts, pair[0]);
+                all.push(Interval { way, ends: [at(part), at(part + 1)] });
+            }
         }
     };
     for pair in ends.windows(2) {
@@ -178,8 +225,9 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
             let nearest = (ln(high) - NEAREST).min(most - 1.0);
             add(Way::Near(high, -1.0), nearest, most);
             if high == range {
-                // On the last of a weak well angles are larger than anywhere, however thin it is.
-                add(Way::Straight, high - Exponential::exp(nearest), high);
+                // On the last of a weak well angles are larger than anywhere, however thin it is: less than b is rounded by
+                // is left out or counted twice there.
+                add(Way::Beside(high), 0.0, Exponential::exp(nearest));
             }
         } else {
             let from = ln(middle / length);
@@ -189,7 +237,7 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
     all
 }
 
-/// Each interval by both rules: its part, and how far they differ.
+/// Each interval by both rules.
 fn evaluate(
     deflector: &Deflector,
     energy: f64,
@@ -197,23 +245,30 @@ fn evaluate(
     intervals: &[Interval],
     threads: usize,
     ticker: &mut Ticker<'_>,
-) -> Result<Vec<[f64; 2]>> {
+) -> Result<Vec<Part>> {
     let mut places = Vec::with_capacity(POINTS * intervals.len());
     for interval in intervals {
         for k in 0..POINTS {
             places.push(interval.way.at(kronrod::place(interval.ends, k)));
         }
     }
-    let b: Vec<f64> = places.iter().map(|(b, _)| *b).collect();
+    let b: Vec<f64> = places.iter().map(|place| place.b).collect();
     let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
-    let mut values = Vec::with_capacity(places.len());
-    for ((b, weight), deflection) in places.iter().zip(&found) {
-        let turned =
-            if deflection.status == Status::Captured { 0.0 } else { less_than_one(deflection.angle, l) };
+    let (mut values, mut noise) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
+    for (Place { b, rest, weight }, deflection) in places.iter().zip(&found) {
+        let captured = deflection.status == Status::Captured;
+        // Near the rim of a well that falls as a root of what is left: by less than b is rounded it is not the same.
+        let missing = if deflection.derivative.is_finite() { deflection.derivative * rest } else { 0.0 };
+        let turned = if captured { 0.0 } else { less_than_one(deflection.angle + missing, l) };
+        let steepest = f64::from(l) * (deflection.angle.abs() + deflection.error).min(1.0);
         values.push(turned * b * weight);
+        noise.push(if captured { 0.0 } else { steepest * deflection.error * b * weight });
     }
-    let rules = |(interval, values): (&Interval, &[f64])| both_rules(interval.ends, values);
-    Ok(intervals.iter().zip(values.chunks(POINTS)).map(rules).collect())
+    let rules = |((interval, values), noise): ((&Interval, &[f64]), &[f64])| {
+        let [value, off] = both_rules(interval.ends, values);
+        Part { value, off, noise: both_rules(interval.ends, noise)[0] }
+    };
+    Ok(intervals.iter().zip(values.chunks(POINTS)).zip(noise.chunks(POINTS)).map(rules).collect())
 }
 
 /// The integral and how far it may be off.

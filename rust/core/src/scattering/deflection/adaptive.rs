@@ -7,29 +7,26 @@
 
 use super::comparison::Comparison;
 use super::delay_tail::DelayTail;
-use super::nodes::{Node, sinh};
+use super::integrands;
+use super::nodes::Node;
 use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
-use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::scattering::kronrod;
+use crate::tiered;
 
-/// Points of a rule, filled up to whole rows.
-const POINTS: usize = 2 * WIDTH;
-/// Intervals at most.
+/// Intervals at most, or twice those that there are at first.
 const MOST: usize = 600;
+/// Halvings in a row that made nothing better, …
+const STUCK: u8 = 3;
+/// … and did not change an integral by more than this part of its size.
+const UNCHANGED: f64 = 1e-8;
 /// What is asked of ψ, of dψ/db and of the delay, as parts of the tolerance.
 const LOOSER: [f64; INTEGRALS] = [1.0, 10.0, 100.0];
 /// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
-/// Up to this w at most the mean force is taken, by four points.
+/// Up to this w at most the mean force is taken.
 const NEAR: f64 = 0.25;
-/// Of Gauss and Legendre between 0 and 1: places and weights.
-const MEAN: [[f64; 2]; 4] = [
-    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
-    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
-    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
-    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
-];
 /// What is left out at the far end, as a part of the tolerance.
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
@@ -79,10 +76,13 @@ impl Pair {
     }
 }
 
-/// How far out the mean of four forces has all digits: to where the force has changed little, and V has no edge.
-pub(super) fn near(turning: f64, steepness: f64, edges: &[f64]) -> f64 {
+/// How far out the mean of four forces has all digits: to where the force has changed little, and V has no edge and no
+/// feature begins.
+pub(super) fn near(turning: f64, steepness: f64, edges: &[f64], mark: f64) -> f64 {
     let smooth = NEAR.min((0.2 / steepness).sqrt());
-    let edge = edges.iter().filter(|r| **r > turning).fold(f64::INFINITY, |least, r| r.min(least));
+    // Not one that is the turning point but for rounding.
+    let beyond = turning * (1.0 + 16.0 * f64::EPSILON);
+    let edge = edges.iter().filter(|r| **r > beyond).fold(mark, |least, r| r.min(least));
     if edge == f64::INFINITY { smooth } else { smooth.min(inverse_cosh(edge / turning)) }
 }
 
@@ -108,6 +108,25 @@ struct Interval {
     integral: [f64; INTEGRALS],
     error: [f64; INTEGRALS],
     size: [f64; INTEGRALS],
+    /// How often in a row halving has not made less of each error, nor changed the integral: it is rounding.
+    stuck: [u8; INTEGRALS],
+}
+
+impl Interval {
+    /// Whether halving may mend the error of an integral.
+    fn is_loose(&self, i: usize) -> bool {
+        self.stuck[i] < STUCK
+    }
+    /// Tells its halves whether they are any better.
+    fn is_cut_into(&self, first: &mut Self, second: &mut Self) {
+        for i in 0..INTEGRALS {
+            let changed = (first.integral[i] + second.integral[i] - self.integral[i]).abs();
+            let no_less = first.error[i] + second.error[i] >= 0.5 * self.error[i];
+            if no_less && changed <= UNCHANGED * self.size[i] {
+                (first.stuck[i], second.stuck[i]) = (self.stuck[i] + 1, self.stuck[i] + 1);
+            }
+        }
+    }
 }
 
 /// The integrals over all w ≥ 0 with intervals that end at the given distances.
@@ -119,8 +138,9 @@ pub(super) fn integrate(
     (tolerance, wanted): (f64, usize),
 ) -> Whole {
     let mut known = [0.0; INTEGRALS];
+    let comparison = Comparison::of(pair.value, pair.root);
     if integrand == Integrand::Deflection {
-        known[0] = Comparison::of(pair.value, pair.root).closed;
+        known[0] = comparison.closed;
     }
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
@@ -153,54 +173,76 @@ pub(super) fn integrate(
         for part in 0..parts as usize {
             let from = length.mul_add(part as f64, pair_of_marks[0]);
             let to = if part + 1 == parts as usize { pair_of_marks[1] } else { from + length };
-            intervals.push(rule(profile, pair, integrand, [from, to]));
+            intervals.push(rule(profile, (pair, &comparison), (integrand, wanted), [from, to]));
         }
     }
+    let most = MOST.max(2 * intervals.len());
     loop {
-        let (sum, error, size) = totals(&intervals);
+        let Totals { integral, error, loose, size } = totals(&intervals);
         let share = |i: usize| {
             let settled = error[i] <= noise[i] || size[i] <= 0.0;
-            if settled { 0.0 } else { error[i] / size[i] }
+            if settled { 0.0 } else { loose[i] / size[i] }
         };
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
-        let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
-            return whole(sum, error[0], size[0]);
-        };
-        let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
-        let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
-        let [from, to] = intervals[at].ends;
+        let cut = (0..wanted).find(open).filter(|_| intervals.len() < most).and_then(|worst| {
+            let places = (0..intervals.len()).filter(|at| intervals[*at].is_loose(worst));
+            places.max_by(|a, b| intervals[*a].error[worst].total_cmp(&intervals[*b].error[worst]))
+        });
+        let Some(at) = cut else { return whole(integral, error[0], size[0]) };
+        let cut = intervals[at];
+        let [from, to] = cut.ends;
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
-            return whole(sum, error[0], size[0]);
+            return whole(integral, error[0], size[0]);
         }
-        intervals[at] = rule(profile, pair, integrand, [from, middle]);
-        intervals.push(rule(profile, pair, integrand, [middle, to]));
+        let [mut first, mut second] = [[from, middle], [middle, to]]
+            .map(|ends| rule(profile, (pair, &comparison), (integrand, wanted), ends));
+        cut.is_cut_into(&mut first, &mut second);
+        intervals[at] = first;
+        intervals.push(second);
     }
 }
 
-/// Sums of integrals, errors and sizes, in the order of the line.
-fn totals(intervals: &[Interval]) -> ([f64; INTEGRALS], [f64; INTEGRALS], [f64; INTEGRALS]) {
-    let mut all = ([0.0; INTEGRALS], [0.0; INTEGRALS], [0.0; INTEGRALS]);
+/// Sums over intervals, in the order of the line.
+struct Totals {
+    integral: [f64; INTEGRALS],
+    error: [f64; INTEGRALS],
+    /// Of those errors that halving may mend.
+    loose: [f64; INTEGRALS],
+    size: [f64; INTEGRALS],
+}
+
+fn totals(intervals: &[Interval]) -> Totals {
+    let zero = [0.0; INTEGRALS];
+    let mut all = Totals { integral: zero, error: zero, loose: zero, size: zero };
     for interval in intervals {
         for i in 0..INTEGRALS {
-            all.0[i] += interval.integral[i];
-            all.1[i] += interval.error[i];
-            all.2[i] += interval.size[i];
+            all.integral[i] += interval.integral[i];
+            all.error[i] += interval.error[i];
+            all.loose[i] += if interval.is_loose(i) { interval.error[i] } else { 0.0 };
+            all.size[i] += interval.size[i];
         }
     }
     all
 }
 
 /// Both rules over one interval.
-fn rule(profile: &Profile, pair: &Pair, integrand: Integrand, ends: [f64; 2]) -> Interval {
-    // One more, to fill the row.
-    let places = core::array::from_fn(|k| kronrod::place(ends, k.min(kronrod::POINTS - 1)));
-    let values = integrands(profile, pair, integrand, &places);
+fn rule(
+    profile: &Profile,
+    pair: (&Pair, &Comparison),
+    wanted: (Integrand, usize),
+    ends: [f64; 2],
+) -> Interval {
+    let mut places: integrands::Rows = [Lanes([0.0; WIDTH]); integrands::ROWS];
+    place_tier(ends, &mut places);
+    let values = integrands::at(profile, pair, wanted, places);
+    let nothing = [0.0; INTEGRALS];
     let mut interval =
-        Interval { ends, integral: [0.0; INTEGRALS], error: [0.0; INTEGRALS], size: [0.0; INTEGRALS] };
-    for i in 0..INTEGRALS {
-        let found = kronrod::estimate(ends, |k| values[k][i]);
+        Interval { ends, integral: nothing, error: nothing, size: nothing, stuck: [0; INTEGRALS] };
+    for i in 0..wanted.1 {
+        let values = as_numbers(&values[i]);
+        let found = kronrod::estimate(ends, |k| values[k]);
         interval.integral[i] = found.integral;
         interval.error[i] = found.error;
         interval.size[i] = found.size;
@@ -208,94 +250,16 @@ fn rule(profile: &Profile, pair: &Pair, integrand: Integrand, ends: [f64; 2]) ->
     interval
 }
 
-/// The integrands at places w.
-fn integrands(
-    profile: &Profile,
-    pair: &Pair,
-    integrand: Integrand,
-    places: &[f64; POINTS],
-) -> [[f64; INTEGRALS]; POINTS] {
-    let nodes = places.map(Node::at);
-    let rows = |of: &dyn Fn(usize) -> f64| -> [Lanes; 2] {
-        core::array::from_fn(|row| Lanes(core::array::from_fn(|lane| of(row * WIDTH + lane))))
-    };
-    let distance = rows(&|k| pair.turning * nodes[k].cosh);
-    let (mut value, mut force) = (distance, distance);
-    profile.values(&distance, &mut value);
-    profile.forces(&distance, &mut force);
-    let mean = mean_forces(profile, pair, places);
-    let (x, y, square) = (pair.value, pair.force, pair.root * pair.root);
-    let comparison = Comparison::of(x, pair.root);
-    core::array::from_fn(|k| {
-        let (row, lane) = (k / WIDTH, k % WIDTH);
-        let node = nodes[k];
-        let (v, u) = (value[row].0[lane] / pair.energy, node.ratio);
-        let pull = distance[row].0[lane] * force[row].0[lane] / pair.energy;
-        let squared = u * u;
-        let excess = mean[k].map_or((x * squared - v) * node.weight, |[mean, _]| {
-            // (V₀ − V)/tanh² w is the mean force times r₀ cosh² w/(1 + cosh w).
-            mean * (node.cosh * node.cosh / (1.0 + node.cosh)) - x
-        });
-        // Near a barrier, and near b = 0, 1 − V₀/E is (b/r₀)² with more digits.
-        let g = mean[k].map_or(1.0 + excess, |_| square + (excess + x));
-        let root = g.sqrt();
-        if integrand == Integrand::Turning {
-            // b/r times r F/E over (1 − V/E).
-            return [pair.root * u * pull / (1.0 - v) / root, 0.0, 0.0];
-        }
-        let p = excess / (root * (root + 1.0));
-        let compared = (1.0 + square * squared).sqrt();
-        let [c1, c2, c3] = comparison.series;
-        let off = if comparison.strong {
-            1.0 / root - 1.0 / compared
-        } else {
-            c3.mul_add(squared, c2).mul_add(squared, c1) * squared - p
-        };
-        let below = if comparison.strong { -off } else { p };
-        let bent = mean[k].map_or_else(
-            || bend(pair, places[k], pull, node),
-            |[_, turn]| turn * (node.cosh * node.cosh / (1.0 + node.cosh)) + y,
-        );
-        let slope = -(y * below) - square * (bent / (g * root));
-        [off * u, slope * u, (p - 0.5 * x * squared / (compared * compared)) * node.cosh]
-    })
+/// The points of a rule, and once more the last, to fill the rows.
+#[inline(always)]
+fn place<V: Vector8>(ends: [f64; 2], places: &mut integrands::Rows) {
+    for (k, place) in as_numbers_mut(places).iter_mut().enumerate() {
+        *place = kronrod::place(ends, k.min(kronrod::POINTS - 1));
+    }
 }
 
-/// (r F(r) − r₀F(r₀) u²)/E/tanh² w.
-fn bend(pair: &Pair, w: f64, pull: f64, node: Node) -> f64 {
-    if w > 0.0 { (pull - pair.force * node.ratio * node.ratio) * node.weight } else { 0.0 }
-}
-
-/// r₀/E times the means of F and of d(rF)/dr between r₀ and each near place; nothing for others.
-fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<[f64; 2]>; POINTS] {
-    let mut means = [None; POINTS];
-    if places[0] >= pair.near {
-        return means;
-    }
-    let mut rows = [Lanes([pair.turning; WIDTH]); POINTS * 4 / WIDTH];
-    let (mut value, mut force, mut curvature) = (rows, rows, rows);
-    for (k, w) in places.iter().enumerate() {
-        let half = sinh(0.5 * w);
-        let way = 2.0 * half * half;
-        for (i, [place, _]) in MEAN.iter().enumerate() {
-            let at = 4 * k + i;
-            rows[at / WIDTH].0[at % WIDTH] = (pair.turning * place).mul_add(way, pair.turning);
-        }
-    }
-    profile.rows(&rows, &mut value, &mut force, &mut curvature);
-    for (k, w) in places.iter().enumerate() {
-        let of = |all: &[Lanes], i: usize| all[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
-        let one = |i: usize| MEAN[i][1] * of(&force, i);
-        let turn = |i: usize| MEAN[i][1] * (of(&force, i) - of(&rows, i) * of(&curvature, i));
-        if *w < pair.near {
-            let scale = pair.turning / pair.energy;
-            means[k] = Some([
-                scale * ((one(0) + one(3)) + (one(1) + one(2))),
-                scale * ((turn(0) + turn(3)) + (turn(1) + turn(2))),
-            ]);
-        }
-    }
-    means
+tiered! {
+    fn place_tier[][](ends: [f64; 2], places: &mut integrands::Rows) = place;
 }
 
 /// Where the rest no longer counts: neither what V adds, nor what is left of the comparison, which falls as u³.

@@ -208,6 +208,9 @@ fn sphere(radius: f64, b: f64) -> Deflection {
     }
 }
 
+/// Down to this share what is left of the speed across is the difference of squares, not of a sum.
+const WEAK: f64 = -0.5;
+
 /// `share` is depth over energy; the speed within is √(1 + share) times that without.
 fn square_well(share: f64, radius: f64, b: f64) -> Deflection {
     let square = 1.0 + share;
@@ -219,18 +222,21 @@ fn square_well(share: f64, radius: f64, b: f64) -> Deflection {
     if square <= 0.0 || b >= square.sqrt() * radius {
         return sphere(radius, b);
     }
-    let speed = square.sqrt();
-    let (s, t) = (b / radius, b / radius / speed);
-    let (along, within) = (((1.0 - s) * (1.0 + s)).sqrt(), ((1.0 - t) * (1.0 + t)).sqrt());
-    // sin and cos of asin s − asin t, where s² − t² is s² times share over square.
-    let sine = s * (share / square) / (within + along / speed);
-    let angle = -2.0 * atan2(sine, along.mul_add(within, s * t));
+    let (s, speed) = (b / radius, square.sqrt());
+    // cos of asin s, and speed times that of asin(s/speed): of differences that the rounding of s leaves alone, as at the
+    // rim of a weak well both vanish.
+    let along = ((radius - b) * (radius + b)).sqrt() / radius;
+    let within =
+        if share > WEAK { along.mul_add(along, share).sqrt() } else { ((speed - s) * (speed + s)).sqrt() };
+    let sum = within + along;
+    // asin s − asin(s/speed), by its sine and cosine times the speed.
+    let angle = -2.0 * atan2(s * (share / sum), along.mul_add(within, s * s));
     Deflection {
         angle,
         complement: PI - angle.abs(),
         closest_approach: b / speed,
-        derivative: -2.0 / radius * (1.0 / along - 1.0 / (speed * within)),
-        delay: 2.0 * radius * (within / speed - along),
+        derivative: -2.0 / radius * (share / (along * within * sum)),
+        delay: 2.0 * radius * (share / square) * (1.0 / sum - along),
         error: 0.0,
         turning_points: 1,
         status: Status::Scattered,

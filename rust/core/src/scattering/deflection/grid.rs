@@ -25,7 +25,7 @@ pub(super) struct Grid {
     pub(super) pull: Vec<f64>,
     /// The part of it where there is a potential: first and last place.
     pub(super) inside: [usize; 2],
-    /// The largest |V| and |r dV/dr| from there on.
+    /// The largest |V| and |r dV/dr| from there on, features between places among them.
     beyond: Vec<[f64; 2]>,
     /// For every power of two the place from which on |V|/r, or |r² dV/dr|, is at most that.
     faint: [Vec<u16>; 2],
@@ -48,15 +48,19 @@ pub(super) fn place(r: f64) -> usize {
 }
 
 impl Grid {
-    /// Of V and −r dV/dr at all places.
-    pub(super) fn new(value: Vec<f64>, pull: Vec<f64>, inside: [usize; 2]) -> Self {
+    /// Of V and −r dV/dr at all places, and at distances between them.
+    pub(super) fn new(value: Vec<f64>, pull: Vec<f64>, inside: [usize; 2], between: &[[f64; 3]]) -> Self {
         let mut beyond = vec![[0.0; 2]; POINTS + 1];
         let mut tail = [vec![0.0; POINTS], vec![0.0; POINTS]];
         let larger = |old: f64, new: f64| if new.abs() > old { new.abs() } else { old };
         let mut most = 0.0;
+        let mut features = between.iter().rev().peekable();
         for at in (0..POINTS).rev() {
-            let [v, f] = beyond[at + 1];
-            let [v, f] = [larger(v, value[at]), larger(f, pull[at])];
+            let [mut v, mut f] = beyond[at + 1];
+            while let Some([_, value, pull]) = features.next_if(|[r, ..]| place(*r) >= at) {
+                [v, f] = [larger(v, *value), larger(f, *pull)];
+            }
+            [v, f] = [larger(v, value[at]), larger(f, pull[at])];
             beyond[at] = [v, f];
             most = larger(most, f * radius(at));
             tail[0][at] = v / radius(at);
@@ -65,13 +69,18 @@ impl Grid {
         let mut climbed = falls_to::<51>(&value, inside[0]);
         // One more, as energies are up to √2 or 4/3 times the number by which they are found.
         climbed.rotate_left(1);
-        let repels = pull[inside[0]..=inside[1]].iter().all(|pull| *pull >= 0.0);
+        let repels = pull[inside[0]..=inside[1]].iter().all(|pull| *pull >= 0.0)
+            && between.iter().all(|[_, _, pull]| *pull >= 0.0);
         let faint = tail.map(|tail| falls_to::<52>(&tail, 0));
         Self { value, pull, inside, beyond, faint, climbed, repels }
     }
     /// The largest |V| (0) or |r dV/dr| (1) at this distance and beyond, or a little more.
     pub(super) fn beyond(&self, r: f64, which: usize) -> f64 {
         self.beyond[if r < radius(0) { 0 } else { place(r) }][which]
+    }
+    /// The outermost place at or beyond which |V| comes to an energy.
+    pub(super) fn outermost(&self, energy: f64) -> Option<usize> {
+        self.beyond[..POINTS].iter().rposition(|[value, _]| *value >= energy)
     }
     /// The distance within which |V| comes to an energy, V going as 1/rⁿ with that n inward of the grid.
     pub(super) fn reach(&self, energy: f64, power: f64) -> f64 {

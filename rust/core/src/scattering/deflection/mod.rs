@@ -13,6 +13,7 @@ mod comparison;
 mod delay_tail;
 mod grid;
 mod head_on;
+mod integrands;
 mod nodes;
 mod pack;
 mod pairs;
@@ -138,6 +139,11 @@ impl Deflector {
         let known = self.closed.map(|closed| closed.edges(energy)).unwrap_or_default();
         let found = self.profile.as_ref().map(|profile| turning::edges(profile, energy)).unwrap_or_default();
         [known, found].concat()
+    }
+    /// Impact parameters, ascending, between which the deflection function of an energy is smooth where V has features that
+    /// are narrow against their distance; none of most potentials.
+    pub(in crate::scattering) fn bends(&self, energy: f64) -> Vec<f64> {
+        self.profile.as_ref().map(|profile| profile.bends(energy)).unwrap_or_default()
     }
     /// Whether the angle falls so slowly with the impact parameter that even momentum transfer has no end.
     pub fn falls_as_inverse_distance(&self) -> bool {

@@ -33,7 +33,7 @@ impl Node {
 }
 
 /// sinh w, without the difference of exponentials near zero.
-pub(super) fn sinh(w: f64) -> f64 {
+fn sinh(w: f64) -> f64 {
     if w < 0.6 {
         let square = w * w;
         // To w²¹/21!, below 1e-24 of the whole.

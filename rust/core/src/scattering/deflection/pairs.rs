@@ -203,6 +203,7 @@ impl Quadrature<'_> {
                 let at = usize::from(*at);
                 let found = &mut found[usize::from(turning.places[at])];
                 self.finish((turning, at), &pack, &work.sums, lane, found);
+                profile.check_resolved(pack.energy.0[lane], self.tolerance, found)?;
             }
         }
         Ok(())
@@ -238,6 +239,10 @@ impl Quadrature<'_> {
             };
             let most = rest * if self.all { scale * r * r } else { scale };
             let faint = profile.grid().faint(most, self.all);
+            if profile.next_mark(r) < faint {
+                reaches.push(0);
+                continue;
+            }
             reaches.push(ladder.count((faint * inverse[at]).max(series)));
         }
         reaches
@@ -263,7 +268,8 @@ impl Quadrature<'_> {
             // Measured against V where that is small: on the last of a soft edge the force is far below E/r₀, and all of it is
             // lost in a short way.
             let steepness = pack.curvature.0[lane].abs() / (0.01 * x.abs().min(1.0) + y.abs());
-            let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
+            let mark = profile.next_mark(r * (1.0 + 16.0 * f64::EPSILON));
+            let near = adaptive::near(r, steepness.max(1.0), profile.breaks(), mark);
             let curvature = pack.curvature.0[lane];
             Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
         };
@@ -301,7 +307,7 @@ impl Quadrature<'_> {
         barriers: &[f64],
         tolerance: f64,
     ) -> ([f64; INTEGRALS], f64) {
-        let ends = [barriers, self.profile.breaks()].concat();
+        let ends = [barriers, self.profile.breaks(), self.profile.marks()].concat();
         let wanted = if self.all && integrand == Integrand::Deflection { INTEGRALS } else { 1 };
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)

@@ -4,11 +4,13 @@
 //! and h is stationary where U(r) = V + r V′/2 passes E. U depends on neither, so between its extrema, found once, every
 //! question has one bracketed answer.
 
+use super::Deflection;
 use super::grid::{Grid, POINTS, place, radius};
 use super::search::{bisected, highest};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
+use crate::potentials::features::Features;
 use crate::words::number;
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -16,6 +18,14 @@ use std::sync::Arc;
 /// How far below an energy U is taken to touch it, as a part of what it is the sum of. By so little it makes no difference
 /// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
 const TOUCHES: f64 = 16.0 * f64::EPSILON;
+
+/// By how much of V and r dV/dr U must change to have an extremum.
+const SAME_U: f64 = 1e-9;
+
+/// Marks that are farther apart are of different features.
+const FAR_APART: f64 = 0.125;
+/// Impact parameters that differ by no more of themselves need not be looked at twice.
+const ONE_BEND: f64 = 1e-13;
 
 /// Powers of r that differ by no more of themselves are one.
 const SAME_POWER: f64 = 1e-13;
@@ -48,6 +58,10 @@ pub(super) struct Profile {
     domain: [f64; 2],
     /// Where it is not smooth.
     breaks: Vec<f64>,
+    /// Between which it is smooth where it is narrow.
+    marks: Vec<f64>,
+    /// Where it was not resolved: from, to, and the largest |V|.
+    unresolved: Vec<[f64; 3]>,
     /// The extrema of U within the grid, as pairs (r, U), with its ends: monotone between neighbours.
     extrema: Vec<[f64; 2]>,
     center: Center,
@@ -79,7 +93,9 @@ impl Profile {
         }
         let force = as_numbers(&force);
         let pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
-        let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside);
+        let Features { places, marks, unresolved } = Features::of(scaled.as_ref());
+        let between = looked_at(scaled.as_ref(), &places);
+        let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside, &between);
         let repels = breaks.is_empty() && grid.repels;
         let mut made = Self {
             potential: scaled,
@@ -90,6 +106,8 @@ impl Profile {
             repels,
             domain,
             breaks,
+            marks,
+            unresolved,
             extrema: Vec::new(),
             center: Center::Repulsive,
             one_turning_point_from: 0.0,
@@ -100,7 +118,7 @@ impl Profile {
         if domain[1] < f64::INFINITY {
             made.last_value = made.value(domain[1]);
         }
-        made.extrema = made.find_extrema();
+        made.extrema = made.find_extrema(&between);
         made.center = made.find_center();
         let (v, pull) = (made.grid.value[POINTS - 1], made.grid.pull[POINTS - 1]);
         if v != 0.0 && pull / v < 1.0 + 1e-9 {
@@ -115,7 +133,7 @@ impl Profile {
             made.power_from = radius(first);
         }
         // Where everything repels, U passes E only behind V = E.
-        if force.iter().skip(inside[0]).any(|f| *f < 0.0) {
+        if force.iter().skip(inside[0]).any(|f| *f < 0.0) || between.iter().any(|[_, _, pull]| *pull < 0.0) {
             let last = made.extrema.len().saturating_sub(1);
             let touched = made.extrema.iter().enumerate().map(|(at, [r, u])| {
                 // Not of the ends of the grid, which are no extrema.
@@ -146,8 +164,7 @@ impl Profile {
             return self.give_length(1.0);
         }
         let energy = self.take_energy(energy).abs();
-        let outermost = self.grid.value.iter().rposition(|value| value.abs() >= energy);
-        self.give_length(outermost.map_or(1.0, radius))
+        self.give_length(self.grid.outermost(energy).map_or(1.0, radius))
     }
     /// An energy of these units, from one of the caller's.
     #[inline]
@@ -157,8 +174,36 @@ impl Profile {
     pub(super) fn breaks(&self) -> &[f64] {
         &self.breaks
     }
+    /// Distances between which it is smooth where it is narrow, ascending.
+    pub(super) fn marks(&self) -> &[f64] {
+        &self.marks
+    }
+    /// The first of them beyond a distance; infinite if there is none.
+    #[inline]
+    pub(super) fn next_mark(&self, r: f64) -> f64 {
+        let at = self.marks.partition_point(|mark| *mark <= r);
+        self.marks.get(at).copied().unwrap_or(f64::INFINITY)
+    }
     pub(super) fn center(&self) -> Center {
         self.center
+    }
+
+    /// The impact parameters, in the caller's units and ascending, with which what comes with an energy turns or passes where
+    /// V has features.
+    pub(super) fn bends(&self, energy: f64) -> Vec<f64> {
+        let energy = self.take_energy(energy);
+        let of = |marks: &[f64]| {
+            // Between marks: at one of them a sum would begin anew where it begins.
+            let r = 0.5 * (marks[0] + marks[1]);
+            let rest = (1.0 - self.value(r) / energy).max(0.0);
+            [r, r * rest.sqrt()].map(|b| self.give_length(b))
+        };
+        let near = |marks: &&[f64]| marks[1] - marks[0] < FAR_APART * marks[1];
+        let mut bends: Vec<f64> = self.marks.windows(2).filter(near).flat_map(of).collect();
+        bends.retain(|b| *b > 0.0 && b.is_finite());
+        bends.sort_by(f64::total_cmp);
+        bends.dedup_by(|b, a| *b - *a <= ONE_BEND * *a);
+        bends
     }
 
     /// V at rows of distances; none beyond its range.
@@ -269,6 +314,30 @@ impl Profile {
         Err(Error::invalid("potential", message))
     }
 
+    /// Refuses what passes where V changes too fast to be told, and what is no number.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `potential`.
+    #[inline]
+    pub(super) fn check_resolved(&self, energy: f64, tolerance: f64, found: &Deflection) -> Result<()> {
+        let passed = |[_, to, most]: &&[f64; 3]| *to > found.closest_approach && *most > tolerance * energy;
+        let unresolved = self.unresolved.iter().find(passed);
+        if unresolved.is_none() && found.angle.is_finite() && found.error.is_finite() {
+            return Ok(());
+        }
+        Err(self.is_not_resolved(energy, unresolved.map_or(found.closest_approach, |[from, ..]| *from)))
+    }
+    #[cold]
+    fn is_not_resolved(&self, energy: f64, r: f64) -> Error {
+        let message = format!(
+            "expected one that can be resolved, but about r = {} it changes too fast for what comes with energy {}; \
+             let it be smoother there",
+            number(self.give_length(r)),
+            number(scale(energy, self.energy))
+        );
+        Error::invalid("potential", message)
+    }
+
     /// U(r) = V + r V′/2.
     fn circular_energy(&self, r: f64) -> f64 {
         (-0.5 * r).mul_add(self.force(r), self.value(r))
@@ -347,22 +416,43 @@ impl Profile {
         (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }
 
-    /// The extrema of U on the grid, each refined, and the ends.
-    fn find_extrema(&self) -> Vec<[f64; 2]> {
+    /// The extrema of U on the grid and between its places, each refined, and the ends.
+    fn find_extrema(&self, between: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let [first, last] = self.grid.inside;
-        let at = |i: usize| [radius(i), (-0.5_f64).mul_add(self.grid.pull[i], self.grid.value[i])];
-        let places: Vec<usize> = (first..=last).filter(|i| at(*i)[1].is_finite()).collect();
-        let (Some(&low), Some(&high)) = (places.first(), places.last()) else { return Vec::new() };
-        let mut found = vec![at(low)];
-        for i in low + 1..high {
-            let [[a, before], [_, here], [c, after]] = [at(i - 1), at(i), at(i + 1)];
-            if (here > before && here >= after) || (here < before && here <= after) {
-                let sign = if here > before { 1.0 } else { -1.0 };
+        let circular = |[r, value, pull]: [f64; 3]| {
+            [r, (-0.5_f64).mul_add(pull, value), SAME_U * (value.abs() + pull.abs())]
+        };
+        let of_grid = (first..=last).map(|i| [radius(i), self.grid.value[i], self.grid.pull[i]]);
+        let mut places: Vec<[f64; 3]> = of_grid.map(circular).collect();
+        if let (Some(&[low, ..]), Some(&[high, ..])) = (places.first(), places.last()) {
+            places.extend(between.iter().copied().filter(|[r, ..]| *r > low && *r < high).map(circular));
+            places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            places.dedup_by(|a, b| a[0] == b[0]);
+        }
+        places.retain(|[_, u, _]| u.is_finite());
+        let Some(&[low, below, _]) = places.first() else { return Vec::new() };
+        let mut found = vec![[low, below]];
+        // U rises (1) or falls (−1) to the farthest that it has come to; by less than it is rounded it does neither.
+        let (mut sign, mut farthest) = (0.0, 0);
+        for (at, [_, here, _]) in places.iter().enumerate() {
+            let [_, most, rounding] = places[farthest];
+            let back = most - here;
+            if sign == 0.0 {
+                if back.abs() > rounding {
+                    (sign, farthest) = (-back.signum(), at);
+                }
+            } else if sign * back < 0.0 {
+                farthest = at;
+            } else if sign * back > rounding {
+                let (a, c) = (places[farthest.max(1) - 1][0], places[farthest + 1][0]);
                 let r = highest(a, c, |r| sign * self.circular_energy(r));
                 found.push([r, self.circular_energy(r)]);
+                (sign, farthest) = (-sign, at);
             }
         }
-        found.push(at(high));
+        if let Some(&[high, above, _]) = places.last().filter(|_| places.len() > 1) {
+            found.push([high, above]);
+        }
         found
     }
     /// How V goes on inward of the grid.
@@ -374,6 +464,18 @@ impl Profile {
         }
         if v > 0.0 { Center::Repulsive } else { Center::Attractive((slope / v).round_to(1e-9)) }
     }
+}
+
+/// r, V and −r dV/dr at distances.
+fn looked_at(potential: &dyn Potential, places: &[f64]) -> Vec<[f64; 3]> {
+    let mut rows = vec![Lanes([1.0; WIDTH]); places.len().div_ceil(WIDTH)];
+    as_numbers_mut(&mut rows)[..places.len()].copy_from_slice(places);
+    let (mut value, mut force) = (rows.clone(), rows.clone());
+    potential.all_rows(&rows, &mut value, &mut force, &mut []);
+    let (value, force) = (as_numbers(&value), as_numbers(&force));
+    let of = |(at, r): (usize, &f64)| [*r, value[at], r * force[at]];
+    // Beyond the range of numbers nothing is told apart.
+    places.iter().enumerate().map(of).filter(|[_, v, p]| v.is_finite() && p.is_finite()).collect()
 }
 
 /// None beyond the last distance.

@@ -11,6 +11,8 @@ use crate::tiered;
 
 /// Steps at most; halving alone ends after sixty.
 const MOST_STEPS: usize = 200;
+/// Where V is steep as an exponential they come nearer by a part of its scale each: after so many two of three are halvings.
+const SOON: usize = 12;
 /// Rows that are refined together, so that one need not wait for another.
 const TOGETHER: usize = 4;
 /// What is left after a step is the cube of it, times this at least, …
@@ -93,7 +95,7 @@ impl Turned {
         let rows = self.r.len();
         for from in (0..rows).step_by(TOGETHER) {
             let range = from..rows.min(from + TOGETHER);
-            for _ in 0..MOST_STEPS {
+            for step in 0..MOST_STEPS {
                 profile.rows(
                     &self.r[range.clone()],
                     &mut self.value[range.clone()],
@@ -104,7 +106,7 @@ impl Turned {
                 if !self.going[range.clone()].iter().any(|going| going.any()) {
                     break;
                 }
-                improve_tier(self, range.start, range.end);
+                improve_tier(self, range.start, range.end, step >= SOON && step % 3 > 0);
             }
         }
         scale_tier(self);
@@ -149,9 +151,9 @@ fn start<V: Vector8>(turned: &mut Turned) {
     }
 }
 
-/// One step of the lanes that are not done.
+/// One step of the lanes that are not done; a halving of their brackets if that is asked for.
 #[inline(always)]
-fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize) {
+fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize, halve: bool) {
     let (zero, one, half) = (V::zero(), V::one(), V::splat(0.5));
     for row in from..to {
         let (energy, b, at) = (V::load(turned.energy[row]), V::load(turned.b[row]), V::load(turned.r[row]));
@@ -167,7 +169,7 @@ fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize) {
         let newton = rest / slope;
         let bent = half * newton * (bend / slope);
         let next = at - at * (newton / (one - bent));
-        let inside = low.less_equal(next).and(next.less_equal(high));
+        let inside = low.less_equal(next).and(next.less_equal(high)).and(Bits::splat(!halve));
         let next = V::select(inside, next, half * (low + high));
         let step = (next - at).abs();
         let part = step / at;
@@ -206,5 +208,5 @@ fn scale<V: Vector8>(turned: &mut Turned) {
 tiered! {
     fn scale_tier[][](turned: &mut Turned) = scale;
     fn start_tier[][](turned: &mut Turned) = start;
-    fn improve_tier[][](turned: &mut Turned, from: usize, to: usize) = improve;
+    fn improve_tier[][](turned: &mut Turned, from: usize, to: usize, halve: bool) = improve;
 }

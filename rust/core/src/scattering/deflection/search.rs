@@ -16,7 +16,9 @@ pub(super) fn highest(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64
     let golden = 0.618_033_988_749_894_9;
     let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
     let (mut at_left, mut at_right) = (function(left), function(right));
-    while high - low > 1e-8 * high {
+    // Or of a bracket that is narrower than those of a grid.
+    let width = 16.0 * (high - low);
+    while high - low > (1e-8 * high.min(width)).max(4.0 * f64::EPSILON * high) {
         if at_left >= at_right {
             (high, right, at_right) = (right, left, at_left);
             left = high - golden * (high - low);

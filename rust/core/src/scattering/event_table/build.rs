@@ -21,6 +21,9 @@ const SMALLEST: f64 = 1e-13;
 const TAIL: f64 = 30.0;
 /// Intervals are halved so often at most.
 const DEEPEST: u32 = 26;
+/// Bends at which the first intervals end, at most, and how far they are apart.
+const MOST_BENDS: usize = 96;
+const LEAST: f64 = 1.0 / (1_u64 << 24) as f64;
 /// Pairs that a thread takes.
 const PART: usize = 32;
 /// Points between the nodes at which a series is tried, none of them where its error vanishes by symmetry.
@@ -104,9 +107,7 @@ impl EventTable {
         let b_max = source.b_max;
         let mut done: Vec<(Interval, Piece)> = Vec::new();
         let mut unresolved = 0.0;
-        let mut pending: Vec<Interval> = (0..8)
-            .map(|i| Interval { from: f64::from(i) / 8.0, to: f64::from(i + 1) / 8.0, depth: 3 })
-            .collect();
+        let mut pending = first(source.deflector, source.energy, b_max);
         while !pending.is_empty() {
             if done.len() + pending.len() > MOST_PIECES {
                 return Ok(None);
@@ -165,6 +166,29 @@ fn matched(source: &mut Source<'_, '_>) -> Result<f64> {
             .then(|| part / half)
     });
     Ok(slope.or(first).unwrap_or(1.0).clamp(1e-9, 1e9))
+}
+
+/// The intervals to begin with: eighths of the disc, cut where the deflection function may bend sharply, and then also
+/// where it breaks, as bends crowd there.
+fn first(deflector: &Deflector, energy: f64, b_max: f64) -> Vec<Interval> {
+    let bends = deflector.bends(energy);
+    let edges = if bends.is_empty() { Vec::new() } else { deflector.edges(energy) };
+    let stride = bends.len().div_ceil(MOST_BENDS).max(1);
+    let breaks = edges.iter().map(|edge| edge.impact_parameter / b_max).filter(|part| *part < 1.0);
+    let mut ends: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).chain(breaks).collect();
+    let kept = ends.clone();
+    // A bend beside one of those would hide it in the last of an interval.
+    let apart = |part: &f64| kept.iter().all(|end| (part - end).abs() >= LEAST);
+    ends.extend(bends.iter().step_by(stride).map(|b| b / b_max).filter(apart));
+    ends.retain(|part| *part <= 1.0);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup_by(|b, a| *b == *a || (*b - *a < LEAST && !kept.contains(b)));
+    // As if halved so often.
+    let depth =
+        |width: f64| (3..DEEPEST).find(|depth| width >= 0.5_f64.powi(*depth as i32)).unwrap_or(DEEPEST);
+    ends.windows(2)
+        .map(|pair| Interval { from: pair[0], to: pair[1], depth: depth(pair[1] - pair[0]) })
+        .collect()
 }
 
 /// Points of an interval: where its series is made, and where it is tried.

@@ -247,7 +247,7 @@ impl Beam {
         }
     }
     /// One of the middle energy along the axis.
-    fn straight(&self, exit: usize, share: f64) -> Arrival {
+    pub(super) fn straight(&self, exit: usize, share: f64) -> Arrival {
         let direction = Direction { tilt: 0.0, azimuth: 0.0 };
         Arrival { energy: self.energy, share, stratum: 0, direction, exit }
     }

@@ -9,7 +9,7 @@ use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
 use crate::scattering::bins::Bins;
-use crate::scattering::histogram::{Edges, Lookup, Steps};
+use crate::scattering::histogram::{Edges, Lookup, Seen, Stepping, Steps};
 use crate::scattering::kinematics::HalfAngle;
 use crate::words::number;
 use crate::{Error, Result};
@@ -215,10 +215,43 @@ impl Tally {
         turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
         turns.sort_unstable();
         turns.dedup();
-        let slot = |draw: u64| {
-            let share = beam.share(draw);
-            beam.stratum(draw) * self.slots() + self.slot(|quantity| beam.value(quantity, exit, share))
-        };
-        Steps::new(&turns, slot, ticker)
+        Steps::new(&turns, &OfDraw { tally: self, beam, exit }, ticker)
+    }
+}
+
+/// A tally of a beam in one of its channels, as a function of the draw.
+struct OfDraw<'a> {
+    tally: &'a Tally,
+    beam: &'a Beam,
+    exit: usize,
+}
+
+impl Stepping for OfDraw<'_> {
+    /// Of each axis the slot and the value.
+    type Values = [(usize, f64); 2];
+
+    fn seen(&self, draw: u64) -> Seen<Self::Values> {
+        let Self { tally, beam, exit } = *self;
+        let mut values = [(0, f64::NAN); 2];
+        let first = beam.stratum(draw) * tally.slots();
+        let arrival = beam.straight(exit, beam.share(draw));
+        let turned = tally.axes.iter().any(|(quantity, _)| *quantity != Quantity::ImpactParameter);
+        let half = if turned { beam.half_angle(&arrival) } else { None };
+        let mut slot = 0;
+        for ((quantity, edges), seen) in tally.axes.iter().zip(&mut values) {
+            let Some(value) = beam.value_at(*quantity, &arrival, half) else {
+                return Seen { draw, slot: first + tally.slots() - 1, values };
+            };
+            *seen = (edges.slot(value), value);
+            slot = slot * (edges.bins() + 2) + seen.0;
+        }
+        Seen { draw, slot: first + slot, values }
+    }
+    fn sides(&self, low: &Seen<Self::Values>, high: &Seen<Self::Values>) -> Option<[f64; 2]> {
+        let mut apart =
+            self.tally.axes.iter().zip(low.values.iter().zip(&high.values)).filter(|(_, (a, b))| a.0 != b.0);
+        let ((_, edges), (a, b)) = apart.next()?;
+        // Of two quantities that step one after the other halving tells which is which.
+        if apart.next().is_some() { None } else { edges.sides([a.0, b.0], [a.1, b.1]) }
     }
 }

@@ -24,6 +24,11 @@ pub(super) fn largest_beyond(
     let part = |i: i32| 1.0 + (f64::from(i) / f64::from(BEYOND)).powi(3) * 999.0;
     let size = |found: &Deflection| if found.status == Status::Captured { PI } else { found.angle.abs() };
     let (mut edge, mut largest) = (None, 0.0_f64);
+    let bends: Vec<f64> = deflector.bends(energy).into_iter().filter(|b| *b > b_max).collect();
+    if !bends.is_empty() {
+        let found = deflector.deflect(&vec![energy; bends.len()], &bends, false, threads, ticker)?;
+        largest = found.iter().map(size).fold(0.0, f64::max);
+    }
     for first in (0..=BEYOND).step_by(WIDTH) {
         let b: Vec<f64> =
             (first..first + WIDTH as i32).map(|i| b_max * part(i)).filter(|b| b.is_finite()).collect();

@@ -1,6 +1,7 @@
 //! Where a quantity turns: the draws between which it only rises or only falls, as bisection needs them.
 
 use super::{Beam, Target};
+use crate::numerics::philox::DRAW_BITS;
 use crate::scattering::event_table::EventTable;
 use crate::scattering::monte_carlo::quantity::Quantity;
 use crate::scattering::monte_carlo::strata::Strata;
@@ -36,10 +37,20 @@ impl Beam {
             Target::Tables(..) => Vec::new(),
         }
     }
+    /// The first draw with at least that b/b_max, as it is rounded: pieces of a table do not quite meet, and what is looked for
+    /// in one of them is not to be hidden by a draw of the next.
+    fn first_at(&self, part: f64) -> u64 {
+        let (mut low, mut high) = (0, 1_u64 << DRAW_BITS);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.share(middle).sqrt() < part { low = middle + 1 } else { high = middle }
+        }
+        low
+    }
     /// Those of a table: the ends of its pieces, and within a piece where what is tried rises and falls.
     fn turns(&self, quantity: Quantity, exit: usize, table: &EventTable) -> Vec<u64> {
         let at = |draw: u64| self.value(quantity, exit, self.share(draw));
-        let mut draws: Vec<u64> = table.starts().iter().map(|part| self.draw(part * part)).collect();
+        let mut draws: Vec<u64> = table.starts().iter().map(|part| self.first_at(*part)).collect();
         // What is tried is to be near in each stratum, however few draws a piece has in one of them.
         draws.extend(self.strata().into_iter().flat_map(Strata::boundaries));
         draws.sort_unstable();
