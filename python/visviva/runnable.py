@@ -90,12 +90,15 @@ class Runnable(Shown, ABC, Generic[_Result]):
             What bodies with a `Particles.radius` do when they touch; by default they pass through each other.
             ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,
             momentum, center of mass and volume are kept, the angular momentum of both about each other is not. The
-            other has no mass and no radius from then on and goes with it: ``out.final.particles.mass`` tells, and a
-            run with any ``collisions`` goes on from there. ``"bounce"``: an impulse along the line of their centers; a
-            massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
-            ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
-            anew after it. All bodies are on the same steps, no closed form is used while two may touch, and
-            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused, and so are
+            other has no mass and no radius from then on and goes with it: ``out.final.particles.mass`` tells, and a run
+            with any ``collisions`` goes on from there. Forces are then in proportion to masses, as `Gravity`,
+            `UniformField` and `LinearDrag` are; others are refused. ``"bounce"``: an impulse along the line of their
+            centers; a massless body bounces off a massive one, two massless ones as if they had equal masses. Of
+            several contacts at one instant those that approach fastest go first, and those of one body that approach
+            equally fast together, as symmetry asks [4]_; which are at one instant is told to 1e-12 of the radii.
+            ``"stop"``: the run ends there, with `Status.STOPPED`. A row at the time of a collision has the state before
+            it; steps begin anew after it. All bodies are on the same steps, no closed form is used while two may touch,
+            and ``out.collisions`` is the table of them. Spheres that overlap at the start are refused, and so are
             collisions where no body has a radius. Those that bounce and come to rest on each other end the run, with
             `Status.RESTING`.
         restitution : float, optional
@@ -149,6 +152,7 @@ class Runnable(Shown, ABC, Generic[_Result]):
         .. [1] S. Mikkola and S. Aarseth, Celest. Mech. Dyn. Astron. 84 (2002) 343.
         .. [2] S. Mikkola and K. Tanikawa, Mon. Not. R. Astron. Soc. 310 (1999) 745.
         .. [3] M. Preto and S. Tremaine, Astron. J. 118 (1999) 2532.
+        .. [4] J. J. Moreau, in Nonsmooth Mechanics and Applications (Springer, 1988) 1, § 8.
 
         Examples
         --------

@@ -35,8 +35,9 @@ def head_on(m1: float, m2: float) -> vv.Scene:
     return spheres([m1, m2], [[-2, 0, 0], [2, 0, 0]], [[1, 0, 0], [-1, 0, 0]], [0.5, 0.25])
 
 
-def crowd(n: int, seed: int, radius: float = 0.35) -> vv.Scene:
-    """Balls in a harmonic trap, which keeps them together."""
+def crowd(n: int, seed: int, radius: float = 0.35, rule: str = "bounce") -> vv.Scene:
+    """Balls in a harmonic trap, which keeps them together; those that merge pull each other, as their masses are."""
     random = np.random.default_rng(seed)
+    together = vv.Gravity(1.0, softening=1.0) if rule == "merge" else vv.Harmonic(1.0)
     x = np.array([[i % 3, (i // 3) % 3, i // 9] for i in range(n)], dtype=float) - 1.0
-    return spheres(random.uniform(0.5, 2.0, n), x, random.normal(size=(n, 3)), radius, vv.Harmonic(1.0))
+    return spheres(random.uniform(0.5, 2.0, n), x, random.normal(size=(n, 3)), radius, together)

@@ -85,7 +85,7 @@ def test_elements_know_what_has_merged() -> None:
 @pytest.mark.parametrize("rule", ["bounce", "merge"])
 @pytest.mark.parametrize("options", [{"method": "kahan_li8", "dt": 0.0625}, {"method": "stormer13", "dt": 0.03125}])
 def test_a_run_goes_on_to_the_bits_of_one(rule: str, options: dict[str, Any]) -> None:
-    scene = crowd(9, 5, radius=0.2)
+    scene = crowd(9, 5, radius=0.2, rule=rule)
     first = scene.run(1.0, collisions=rule, **options)
     assert len(first.collisions) > 0
     # A node after the last collision: there the run can be cut.
@@ -101,7 +101,7 @@ def test_a_run_goes_on_to_the_bits_of_one(rule: str, options: dict[str, Any]) ->
 @pytest.mark.parametrize("rule", ["bounce", "merge", "stop"])
 @each_method
 def test_copies_have_the_bits_that_they_have_alone(rule: str, method: str) -> None:
-    scene = crowd(9, 5)
+    scene = crowd(9, 5, rule=rule)
     random = np.random.default_rng(1)
     starts = scene.particles.position + 0.02 * random.normal(size=(7, 9, 3))
     radii = np.full((7, 9), 0.35) * random.uniform(0.5, 1.0, (7, 1))
@@ -127,7 +127,7 @@ def test_copies_have_the_bits_that_they_have_alone(rule: str, method: str) -> No
 
 @pytest.mark.parametrize("rule", ["bounce", "merge", "stop"])
 def test_results_are_kept(rule: str, tmp_path: Path) -> None:
-    scene = crowd(9, 5)
+    scene = crowd(9, 5, rule=rule)
     copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None])
     for run in (scene.run(1.0, collisions=rule), copies.run(1.0, collisions=rule)):
         path = tmp_path / "run.npz"

@@ -1,5 +1,7 @@
 """Bodies that torques turn, run without a method and a step: the steps follow the tolerance."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -98,3 +100,24 @@ def test_steps_that_never_agree_are_told_as_that() -> None:
     body = vv.RigidBody(1.0, [1.0, 1.5, 2.0], angular_velocity=[0.3, 0.2, 1.0])
     with pytest.raises(vv.ConvergenceError, match="did not agree to rtol; a larger rtol, a shorter run, or a step dt"):
         vv.Scene(body, vv.RotationalDrag(1e-9)).run([0, 1e9])
+
+
+@pytest.mark.parametrize(
+    ("how", "argument"),
+    [
+        ({"atol": 1e-3}, "atol"),
+        ({"method": "kahan_li8", "dt": 0.01, "atol": 1e-3}, "atol"),
+        ({"method": "kahan_li8", "dt": 0.01, "rtol": 1e-3}, "rtol"),
+        ({"dt": 0.01, "max_step": 0.1}, "max_step"),
+    ],
+)
+def test_what_steers_no_equal_steps_is_refused_without_a_way_that_is_refused_too(how: Any, argument: str) -> None:
+    """No adaptive method steps bodies that torques turn, and no time transformation."""
+    with pytest.raises(
+        vv.InvalidInput, match=rf"^{argument}: .*leave method and dt out.*rtol chooses the steps"
+    ) as told:
+        top().run(t=0.1, **how)
+    assert "verner98" not in str(told.value)
+    assert "time_transformation" not in str(told.value)
+    # The way that is named.
+    assert top().run(t=0.1, rtol=1e-6).status == vv.Status.OK

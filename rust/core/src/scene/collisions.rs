@@ -7,6 +7,9 @@ mod impact;
 mod run;
 mod sweep;
 mod table;
+#[cfg(test)]
+mod tests;
+mod together;
 
 pub use impact::Impact;
 pub use run::{absorbed, plan, run};
@@ -79,7 +82,7 @@ impl Collisions {
     }
 
     /// Refuses what has no meaning: what was lost does not come back backwards in time, and a merged body has no place in
-    /// the lists of a force.
+    /// the lists of a force, nor twice the force of one that asks for no mass.
     fn check(self, scene: &Scene, direction: f64) -> Result<()> {
         let refused = |message: &str| Err(Error::invalid("collisions", message));
         match self {
@@ -95,15 +98,25 @@ impl Collisions {
             }
             _ => {}
         }
-        let mut sets = scene.own_forces.iter().flat_map(|own| &own.sets).flatten().chain(&scene.forces);
-        if self == Self::Merge
-            && let Some(force) = sets.find(|force| force.tells_bodies_apart())
-        {
+        if self != Self::Merge {
+            return Ok(());
+        }
+        for force in scene.own_forces.iter().flat_map(|own| &own.sets).flatten().chain(&scene.forces) {
             let class = force.declaration().class_name;
-            let advice = "expected \"bounce\" or \"stop\", or forces that are the same for all bodies";
-            return refused(&format!(
-                "{class} names bodies or has charges of its own, which a merger does not know to put together; {advice}"
-            ));
+            if force.tells_bodies_apart() {
+                let advice = "expected \"bounce\" or \"stop\", or forces that are the same for all bodies";
+                return refused(&format!(
+                    "{class} names bodies or has charges of its own, which a merger does not know to put together; {advice}"
+                ));
+            }
+            if (0..scene.particles).any(|body| force.needs_mass(body)) {
+                let advice = "expected \"bounce\" or \"stop\", or forces in proportion to the mass of a body, as \
+                              Gravity, UniformField and LinearDrag are";
+                return refused(&format!(
+                    "{class} acts on every body alike, whatever its mass, so one that is put together of two would feel \
+                     half of what both did; {advice}"
+                ));
+            }
         }
         Ok(())
     }

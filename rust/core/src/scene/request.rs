@@ -165,7 +165,7 @@ impl Request {
         }
         events::check(&self.events, scene.particles)?;
         let direction = self.direction(scene)?;
-        self.check_tolerances(method, scene.particles)?;
+        self.check_tolerances(method, scene)?;
         if let Some(step) = self.max_step {
             self.refuse_lost("max_step", step, scene.t0)?;
         }
@@ -221,7 +221,7 @@ impl Request {
     }
 
     /// What steers an adaptive method. `rtol` always has a value, so that a method without tolerances ignores it.
-    fn check_tolerances(&self, method: &Method, particles: usize) -> Result<()> {
+    fn check_tolerances(&self, method: &Method, scene: &Scene) -> Result<()> {
         if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
             let advice = if self.rtol > 0.0 && self.rtol < RTOL_MIN {
                 "; a smaller error needs a fixed-step method such as kahan_li8"
@@ -241,7 +241,7 @@ impl Request {
             Err(Error::invalid(argument, format!("expected {expected} or None, got {}", number(came))))
         };
         if let Some(atol) = &self.atol {
-            atol.check(particles, self.collisions.is_some())?;
+            atol.check(scene.particles, self.collisions.is_some())?;
         }
         match self.max_step {
             Some(step) if step.is_nan() || step <= 0.0 => {
@@ -253,7 +253,13 @@ impl Request {
         for (argument, given) in [("atol", atol), ("max_step", self.max_step.map(number))] {
             match given {
                 Some(given) if !method.adaptive() => {
-                    let transforms = if method.symplectic {
+                    // Those that torques turn take no adaptive method and no time transformation.
+                    let otherwise = if scene.rigid.is_some() {
+                        "leave method and dt out, too, and rtol chooses the steps"
+                    } else {
+                        "name an adaptive method such as verner98"
+                    };
+                    let transforms = if method.symplectic && scene.rigid.is_none() {
                         "; a symplectic method whose steps are chosen from one to the next is no symplectic map, and \
                          its energy drifts: what keeps it where steps must change is time_transformation="
                     } else {
@@ -261,7 +267,7 @@ impl Request {
                     };
                     let message = format!(
                         "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
-                         out and choose dt, or name an adaptive method such as verner98{transforms}",
+                         out and choose dt, or {otherwise}{transforms}",
                         method.name, given
                     );
                     return Err(Error::invalid(argument, message));

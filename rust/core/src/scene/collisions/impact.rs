@@ -26,15 +26,15 @@ pub struct Impact {
 }
 
 /// How two spheres meet.
-struct Meeting {
+pub(super) struct Meeting {
     /// From the first to the second.
-    normal: [f64; 3],
+    pub(super) normal: [f64; 3],
     /// How fast they approach along the run.
-    speed: f64,
+    pub(super) speed: f64,
     /// Shares of a change of their relative motion: how much of it each takes.
-    shares: [f64; 2],
+    pub(super) shares: [f64; 2],
     /// m₁m₂/(m₁ + m₂).
-    reduced: f64,
+    pub(super) reduced: f64,
 }
 
 /// What part of a relative motion belongs to each of two masses: a massless body has all of it beside a massive one, and
@@ -67,7 +67,7 @@ impl Impact {
         Reached { position: self.position.clone(), velocity: self.velocity.clone(), ..Reached::default() }
     }
 
-    fn meeting(&self, i: usize, j: usize) -> Meeting {
+    pub(super) fn meeting(&self, i: usize, j: usize) -> Meeting {
         let between: [f64; 3] = core::array::from_fn(|c| self.position[j][c] - self.position[i][c]);
         let d = distance(self.position[i], self.position[j]);
         let normal = if d > 0.0 { between.map(|x| x / d) } else { [1.0, 0.0, 0.0] };
@@ -123,7 +123,7 @@ impl Impact {
         (speed > rounding).then_some(speed)
     }
 
-    fn collision(&self, (i, j): (usize, usize), t: f64, meeting: &Meeting) -> Collision {
+    pub(super) fn collision(&self, (i, j): (usize, usize), t: f64, meeting: &Meeting) -> Collision {
         let part = self.radius[i] / (self.radius[i] + self.radius[j]);
         let position = core::array::from_fn(|c| {
             self.position[i][c] + part * (self.position[j][c] - self.position[i][c])

@@ -232,26 +232,32 @@ impl Member {
         false
     }
 
-    fn bounce(&mut self, pair: Option<(usize, usize)>, restitution: f64) -> bool {
+    /// Lets spheres bounce that touch, the fastest first, until none approach: whatever was found, so that it does not
+    /// matter how bodies are numbered.
+    fn bounce(&mut self, mut found: Option<(usize, usize)>, restitution: f64) -> bool {
         let t = self.outcome.time;
-        let touching = self.bodies.touching();
-        if let Some(pair) = pair {
-            let (collision, speed) = self.bodies.bounce(pair, restitution, t);
-            self.put(collision);
-            if self.rests(pair, collision.speed, speed) {
-                self.outcome.ending = Ending::Resting { bodies: pair };
-                return false;
-            }
+        let mut touching = self.bodies.touching();
+        if let Some(pair) = found.filter(|pair| !touching.contains(pair)) {
+            touching.push(pair);
         }
+        // Spheres that graze each other may be parting already, by rounding.
+        let mut grazing = found.filter(|&pair| self.bodies.approach(pair).is_none());
         for _ in 0..IMPULSES * (1 + touching.len()) {
-            let speeds = touching.iter().filter_map(|&pair| Some((self.bodies.approach(pair)?, pair)));
-            // The fastest first, of equal ones the first.
-            let fastest = speeds.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-            let Some((_, pair)) = fastest else { return true };
-            let (collision, speed) = self.bodies.bounce(pair, restitution, t);
-            self.put(collision);
-            let rests = self.met.get(&pair).map_or(0, |met| met.rests);
-            let _ = self.met.insert(pair, Met { t, speed, rests });
+            let pairs = grazing.take().map_or_else(|| self.bodies.fastest(&touching), |pair| vec![pair]);
+            if pairs.is_empty() {
+                return true;
+            }
+            for (collision, speed) in self.bodies.bounce_together(&pairs, restitution, t) {
+                let (pair, met_with) = (collision.bodies, collision.speed);
+                self.put(collision);
+                if found.take_if(|found| *found == pair).is_none() {
+                    let rests = self.met.get(&pair).map_or(0, |met| met.rests);
+                    let _ = self.met.insert(pair, Met { t, speed, rests });
+                } else if self.rests(pair, met_with, speed) {
+                    self.outcome.ending = Ending::Resting { bodies: pair };
+                    return false;
+                }
+            }
         }
         let bodies = touching.first().copied().unwrap_or_default();
         self.outcome.ending = Ending::Resting { bodies };

@@ -12,6 +12,9 @@ use crate::ode::state::State;
 const CLOSE: f64 = 1e-6;
 /// … or so close that an orbit there is over in so many of the shortest steps that the time can tell.
 const STEPS: f64 = 1e6;
+/// A fall into a force that grows faster than gravity is quicker than such an orbit: what is closer than this share, and is
+/// past each other in so many steps at the speed that it has.
+const FALLING: f64 = 1e-3;
 
 /// Steps that fall to zero at an end of what is known of a force stop nearer to it than this share of the distance or speed.
 const AT_THE_END: f64 = 1e-6;
@@ -89,8 +92,11 @@ pub(super) fn why(
     }
     let (length, speed) = unit.size;
     let share = closest.0 / length;
-    let quick = share * share.sqrt() * (length / speed) <= STEPS * f64::EPSILON * elapsed.abs();
-    if share <= CLOSE || quick {
+    let soon = STEPS * f64::EPSILON * elapsed.abs();
+    let quick = share * share.sqrt() * (length / speed) <= soon;
+    let speeds = (0..bodies.len()).map(|slot| distance(unit.pick(slot, state.v(), lane), [0.0; 3]));
+    let falls = share <= FALLING && closest.0 <= soon * speeds.fold(0.0, f64::max);
+    if share <= CLOSE || quick || falls {
         Ending::CloseEncounter { distance: scale(closest.0, job.plan.units.length), bodies: closest.1 }
     } else {
         Ending::NoStep
