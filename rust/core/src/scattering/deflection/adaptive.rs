@@ -252,7 +252,10 @@ fn rule(
 
 /// The points of a rule, and once more the last, to fill the rows.
 #[inline(always)]
-#[expect(clippy::extra_unused_type_parameters, reason = "a tier calls its body by its vectors; the compiler makes these")]
+#[expect(
+    clippy::extra_unused_type_parameters,
+    reason = "a tier calls its body by its vectors; the compiler makes these"
+)]
 fn place<V: Vector8>(ends: [f64; 2], places: &mut integrands::Rows) {
     for (k, place) in as_numbers_mut(places).iter_mut().enumerate() {
         *place = kronrod::place(ends, k.min(kronrod::POINTS - 1));
