@@ -106,6 +106,7 @@ BODY = {"mass": 2.0, "moments": [1.0, 2.0, 2.5]}
 TWO = {"mass": [2.0, 1.0], "moments": [[1.0, 2.0, 2.5]] * 2}
 TOP = vv.rigid.HeavyTop(1.0, 0.5, 1.0, 9.81, 0.3)
 SOLID = vv.rigid.box(1.0, 1.0, 2.0, 3.0)
+POLHODE = vv.rigid.polhode([1.0, 2.0, 3.0], [0.1, 1.0, 0.2])
 FREE = vv.rigid.free_rotation([1.0, 2.0, 2.5], [0.1, 1.0, 0.1], [0.0, 1.0])
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 LENGTHS = {"a": (1.0, "positive"), "b": (2.0, "positive"), "c": (3.0, "positive")}
@@ -161,6 +162,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
         {"kind": ("theta", "frame"), "ax": (None, optional("axes"))},
     ),
     "FreeRotation.plot": (FREE.plot, {"kind": ("axes", "frame"), "ax": (None, optional("axes"))}),
+    "Polhode.plot": (POLHODE.plot, {"ax": (None, optional("axes"))}),
     "FreeRotation.animate": (
         FREE.animate,
         {

@@ -42,5 +42,6 @@ def test_the_command(tmp_path, capsys):
     assert told.count("χ² per degree of freedom") == 2
     pytest.importorskip("matplotlib")
     assert (tmp_path / "geiger_marsden.png").stat().st_size > 10_000
-    assert main(["geiger-marsden", "--thickness", "-1", "--output", str(tmp_path)]) == 1
-    assert "thickness" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["geiger-marsden", "--thickness", "-1", "--output", str(tmp_path)])
+    assert "thickness: expected a positive finite number" in capsys.readouterr().err

@@ -233,10 +233,10 @@ fn steps<T: Trial<f64>>(
     }
 }
 
-/// Whether a step that was taken is lost in the rounding of the time, as those are that a method chooses whatever the clock
-/// says. Nodes that are numbers may make the shortest step a little shorter.
+/// Whether a step that was taken is lost in the rounding of the time, below its last digit, as those may be that a method
+/// chooses whatever the clock says.
 pub(crate) fn is_lost(h: f64, smallest: f64) -> bool {
-    h.abs() < 0.5 * smallest
+    h.abs() * SMALLEST_STEP < smallest
 }
 
 /// The shortest step from a time.
