@@ -101,3 +101,23 @@ def test_absolute_tolerances_are_errors_of_steps_too(how: Any) -> None:
     found = circle(0.3).run(t=10.0 * TURN, method="dop853", rtol=1e-13, events=APSIDES, **how).events
     assert len(found) <= 20
     assert (np.diff(found.t) > 0.05 * TURN).all()
+
+
+@pytest.mark.parametrize(
+    "how", [{"method": "dop853"}, {"method": "taylor"}, {"method": "leapfrog", "dt": 0.02}], ids=str
+)
+def test_apsides_of_copies_with_masses_of_their_own_are_those_of_each_alone(how: dict[str, Any]) -> None:
+    """Ten bodies, twelve copies, one thread and three: what counts as rounding is judged by each copy's own bodies."""
+    count, copies = 10, 12
+    semi_major_axis, angle = np.linspace(1.0, 6.0, count - 1), np.arange(1.0, count)
+    mass, place, velocity = np.array([1.0] + [1e-6] * (count - 1)), np.zeros((count, 3)), np.zeros((count, 3))
+    place[1:, :2] = (semi_major_axis * np.array([np.cos(angle), np.sin(angle)])).T
+    velocity[1:, :2] = (np.sqrt(0.95 / semi_major_axis) * np.array([-np.sin(angle), np.cos(angle)])).T
+    masses = np.tile(mass, (copies, 1))
+    masses[:, 1:] *= np.linspace(0.5, 2.0, copies)[:, None]
+    ensemble = vv.Scene(vv.Particles(mass, place, velocity), vv.Gravity(1.0)).ensemble(mass=masses)
+    one, three = (ensemble.run(t=20.0, events=APSIDES, threads=threads, **how) for threads in (1, 3))
+    np.testing.assert_array_equal(one.events.t, three.events.t)
+    alone = ensemble[5].run(t=20.0, events=APSIDES, **how)
+    assert len(alone.events.t) == 6
+    np.testing.assert_array_equal(alone.events.t, one.events.t[one.events.member == 5])

@@ -144,3 +144,18 @@ def test_a_merged_body_feels_what_both_felt(force: vv.forces.Force) -> None:
     assert out.collisions.survivor.tolist() == [0]
     alone = vv.Scene(vv.Particles([1.0], out.final.particles.position[:1], out.final.particles.velocity[:1]), force)
     np.testing.assert_allclose(out.final.acceleration()[0], alone.acceleration()[0], rtol=1e-14)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_copies_meet_at_once_as_each_does_alone(threads: int) -> None:
+    """Nine copies, each at a speed of its own; a fifth of it comes back."""
+    scene = rack(2)
+    speeds = np.linspace(0.5, 2.0, 9)
+    velocity = np.tile(scene.particles.velocity, (9, 1, 1))
+    velocity[:, 0, 0] = speeds
+    copies = scene.ensemble(velocity=velocity).run(t=10.0, collisions="bounce", threads=threads)
+    # Some roundings of the impulses.
+    np.testing.assert_allclose(copies.velocity[:, -1, 0, 0], -speeds / 5, rtol=1e-14)
+    for copy in (0, 4, 8):
+        alone = scene.with_state(velocity=velocity[copy]).run(t=10.0, collisions="bounce")
+        np.testing.assert_array_equal(alone.velocity[-1], copies.velocity[copy, -1])

@@ -4,16 +4,16 @@
 //! and h is stationary where U(r) = V + r V′/2 passes E. U depends on neither, so between its extrema, found once, every
 //! question has one bracketed answer.
 
-use super::Deflection;
 use super::grid::{Grid, POINTS, place, radius};
-use super::search::{bisected, highest};
+use super::search::highest;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
 use crate::potentials::features::Features;
-use crate::words::number;
-use crate::{Error, Result};
 use std::sync::Arc;
+
+mod brackets;
+mod checks;
 
 /// How far below an energy U is taken to touch it, as a part of what it is the sum of. By so little it makes no difference
 /// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
@@ -272,72 +272,6 @@ impl Profile {
     pub(super) fn largest_from(&self, r: f64) -> f64 {
         if r < radius(POINTS - 1) { self.grid.beyond(r, 0) } else { self.value(r).abs() }
     }
-    /// Refuses a table that ends before V does.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `potential`.
-    #[inline]
-    pub(super) fn check_end(&self, energy: f64, tolerance: f64) -> Result<()> {
-        if self.domain[1] == f64::INFINITY || self.last_value.abs() <= tolerance * energy {
-            return Ok(());
-        }
-        Err(self.ends_early(energy))
-    }
-    #[cold]
-    fn ends_early(&self, energy: f64) -> Error {
-        let message = format!(
-            "expected one that has come to 0 where it ends, but at r = {} it is {} of the energy; let it go on \
-             further out, or subtract its last value, if that is what is meant",
-            number(self.give_length(self.domain[1])),
-            number(self.last_value / energy)
-        );
-        Error::invalid("potential", message)
-    }
-    /// Refuses a motion to where a table has not begun.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `potential`.
-    pub(super) fn check_start(&self, energy: f64, b: f64, [low, _]: [f64; 2]) -> Result<()> {
-        if self.domain[0] == 0.0 || low > self.domain[0] {
-            return Ok(());
-        }
-        if !Self::reached(self.domain[0], self.value(self.domain[0]), energy, b) {
-            return Ok(());
-        }
-        let message = format!(
-            "expected one that begins before the turning point, but at r = {}, where it begins, what comes with \
-             energy {} and impact parameter {} still moves inward; let it begin further in",
-            number(self.give_length(self.domain[0])),
-            number(scale(energy, self.energy)),
-            number(self.give_length(b))
-        );
-        Err(Error::invalid("potential", message))
-    }
-
-    /// Refuses what passes where V changes too fast to be told, and what is no number.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `potential`.
-    #[inline]
-    pub(super) fn check_resolved(&self, energy: f64, tolerance: f64, found: &Deflection) -> Result<()> {
-        let passed = |[_, to, most]: &&[f64; 3]| *to > found.closest_approach && *most > tolerance * energy;
-        let unresolved = self.unresolved.iter().find(passed);
-        if unresolved.is_none() && found.angle.is_finite() && found.error.is_finite() {
-            return Ok(());
-        }
-        Err(self.is_not_resolved(energy, unresolved.map_or(found.closest_approach, |[from, ..]| *from)))
-    }
-    #[cold]
-    fn is_not_resolved(&self, energy: f64, r: f64) -> Error {
-        let message = format!(
-            "expected one that can be resolved, but about r = {} it changes too fast for what comes with energy {}; \
-             let it be smoother there",
-            number(self.give_length(r)),
-            number(scale(energy, self.energy))
-        );
-        Error::invalid("potential", message)
-    }
-
     /// U(r) = V + r V′/2.
     fn circular_energy(&self, r: f64) -> f64 {
         (-0.5 * r).mul_add(self.force(r), self.value(r))
@@ -345,75 +279,6 @@ impl Profile {
     /// How far U may be off as it is rounded.
     fn slack(&self, r: f64) -> f64 {
         TOUCHES * (self.value(r).abs() + (0.5 * r * self.force(r)).abs())
-    }
-    /// The distances where h of this energy is stationary, from the outermost inward. Where U but touches the energy from
-    /// below, h is level and goes on as it did: that distance counts twice.
-    pub(super) fn critical_radii(&self, energy: f64) -> Vec<f64> {
-        let mut found = Vec::new();
-        for (at, pair) in self.extrema.windows(2).enumerate().rev() {
-            let ([low, below], [high, above]) = (pair[0], pair[1]);
-            if (below < energy) != (above < energy) {
-                found.push(bisected(low, high, |r| (self.circular_energy(r) < energy) == (below < energy)));
-            }
-            // Of three neighbours the middle is a top or a bottom.
-            let top = at > 0 && above < below && below < energy;
-            if top && energy - below <= self.slack(low) {
-                found.extend([low, low]);
-            }
-        }
-        found
-    }
-    /// The energy from which on h rises wherever it is positive, so that there is one turning point.
-    pub(super) fn one_turning_point_from(&self) -> f64 {
-        self.one_turning_point_from
-    }
-    /// Whether h has come to b² at a distance.
-    pub(super) fn reached(r: f64, value: f64, energy: f64, b: f64) -> bool {
-        let rest = 1.0 - value / energy;
-        rest > 0.0 && r * rest.sqrt() >= b
-    }
-    /// Two distances with one turning point between them, of an h that rises from one to the other through b².
-    pub(super) fn bracket(&self, energy: f64, b: f64, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
-        let [first, last] = self.grid.inside;
-        let (mut from, mut to) = (first.max(place(low) + 1), last.min(place(high)) + 1);
-        if low < radius(0) {
-            from = first;
-        }
-        // The first place from which on h is at least b²; as a rule the sixteenth of an octave is found by halving.
-        while from < to {
-            let middle = usize::midpoint(from, to);
-            if Self::reached(radius(middle), self.grid.value[middle], energy, b) {
-                high = radius(middle);
-                to = middle;
-            } else {
-                low = radius(middle);
-                from = middle + 1;
-            }
-        }
-        // Beyond the grid by octaves.
-        let mut steps = 0;
-        while low == 0.0 && high < f64::INFINITY && steps < 1200 {
-            let half = 0.5 * high;
-            if half <= self.domain[0] || half < f64::MIN_POSITIVE {
-                return (self.domain[0] > 0.0).then_some([self.domain[0], high]);
-            }
-            if Self::reached(half, self.value(half), energy, b) {
-                high = half
-            } else {
-                low = half
-            }
-            steps += 1;
-        }
-        while high == f64::INFINITY && steps < 1200 {
-            let twice = 2.0 * low.max(0.5 * b).max(f64::MIN_POSITIVE);
-            if Self::reached(twice, self.value(twice), energy, b) {
-                high = twice
-            } else {
-                low = twice
-            }
-            steps += 1;
-        }
-        (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }
 
     /// The extrema of U on the grid and between its places, each refined, and the ends.
