@@ -56,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="the outer Solar System, and Rutherford's experiment")
     _output(demo)
     demo.add_argument("--days", type=_positive, default=1e6, help="how long to follow the planets (default: 1e6)")
-    demo.add_argument("--events", type=_number, default=1e8, help="alpha particles to scatter (default: 1e8)")
+    demo.add_argument("--events", type=_number, default=10**8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
     swing = commands.add_parser("pendulum", help="a pendulum against elliptic functions; double pendulums that part")

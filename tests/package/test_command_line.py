@@ -1,5 +1,6 @@
 """The command line, as a person meets it."""
 
+import argparse
 import os
 import platform
 import subprocess
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import visviva as vv
-from visviva.cli import main
+from visviva.cli import _parser, main
 
 
 def test_methods_lists_every_method(capsys: pytest.CaptureFixture[str]) -> None:
@@ -104,3 +105,15 @@ def test_a_plot_has_every_body_and_the_energy() -> None:
     assert energy.lines[0].get_xdata().tolist() == [0.0, 0.5, 1.0]
     alone = vv.problems.figure_eight().scene.run(t=[0.0, 0.5, 1.0], record=("position",)).plot()
     assert len(alone.axes) == 1
+
+
+def test_what_nobody_says_is_of_the_kind_that_is_said() -> None:
+    """`visviva demo` as the README has it, without options, once stopped at a default that was no whole number."""
+    (commands,) = (action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction))
+    looked_at = 0
+    for name, parser in commands.choices.items():
+        for action in parser._actions:
+            if action.type is not None and action.default is not None:
+                assert isinstance(action.default, type(action.type(str(action.default)))), (name, action.dest)
+                looked_at += 1
+    assert looked_at >= 10
