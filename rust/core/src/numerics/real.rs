@@ -112,6 +112,11 @@ pub trait Real:
     /// `coefficient * self` as an unevaluated sum (high, low), so that a coefficient that the
     /// scalar cannot represent does not bias a long integration.
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self);
+    /// The coefficient itself as such a sum.
+    #[inline(always)]
+    fn unevaluated(coefficient: DoubleDouble) -> (Self, Self) {
+        Self::one().scaled_by(coefficient)
+    }
 
     /// Zero.
     #[inline(always)]

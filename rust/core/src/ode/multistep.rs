@@ -45,7 +45,7 @@ impl<S: Element> Weights<S> {
         let weighted = |&weight: &DoubleDouble| S::from_double_double(h2 * weight);
         Self {
             h: S::splat(h),
-            h_inverse: S::one().scaled_by(DoubleDouble::from(1.0) / DoubleDouble::from(h)),
+            h_inverse: S::unevaluated(DoubleDouble::from(1.0) / DoubleDouble::from(h)),
             h2: S::from_double_double(h2),
             second_differences: table.second_differences.iter().rev().map(weighted).collect(),
             velocity: velocity.map(|&weight| S::from_double_double(weight)).collect(),

@@ -109,18 +109,19 @@ impl<S: Controlled> Norm<S> {
         }
         let second_order = matches!(state.form(), Form::SecondOrder(_));
         let mut largest = [S::zero(); 2];
+        let still = [S::zero(); 4];
         for block in &self.blocks {
             let y = match (second_order, block.velocity) {
                 (false, _) => state.all().0,
                 (true, false) => state.q(),
                 (true, true) => state.v(),
             };
-            let change = changes[usize::from(block.velocity)];
+            let change = &changes[usize::from(block.velocity)];
             let mean = self.weights.as_ref().map(|weights| self.center(weights, block, y));
-            let still = [S::zero(); 4];
             let (reference, drift) =
                 mean.as_ref().map_or((&block.reference, &block.drift), |mean| (mean, &still));
-            let sizes = S::pass(LargestErrors {
+            S::pass(LargestErrors {
+                largest: &mut largest,
                 shape: block.shape,
                 y: &y[block.start..],
                 reference,
@@ -133,7 +134,6 @@ impl<S: Controlled> Norm<S> {
                 k: &change.k[block.start..],
                 stride: change.stride,
             });
-            largest = [largest[0].max(sizes[0]), largest[1].max(sizes[1])];
         }
         if self.together { largest.map(S::largest_lane) } else { largest }
     }

@@ -46,7 +46,7 @@ impl<S: Element> Row<S> {
     pub fn end(weights: &[DoubleDouble], a: &Rows<'_>) -> Self {
         let exact = |weights: &[DoubleDouble]| {
             let mut terms = terms(weights);
-            let rest = weights.iter().fold(S::zero(), |rest, &weight| rest + S::one().scaled_by(weight).1);
+            let rest = weights.iter().fold(S::zero(), |rest, &weight| rest + S::unevaluated(weight).1);
             let size = |term: &Term<S>| weights[term.stage].to_f64().abs();
             if let Some(smallest) = terms.iter_mut().min_by(|a, b| size(a).total_cmp(&size(b))) {
                 smallest.weight += rest;

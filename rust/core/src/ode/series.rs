@@ -27,6 +27,8 @@ pub struct Jet<S> {
     pub t: S,
     /// The unit of time, a power of two.
     pub unit: S,
+    /// One over the unit of time.
+    pub per_unit: S,
     /// 1/n.
     pub(crate) inverse: Vec<Scaled<S>>,
 }
@@ -37,7 +39,7 @@ impl<S: Element> Jet<S> {
         let zeros = |blocks: usize| vec![S::zero(); blocks * len];
         let one = DoubleDouble::from(1.0);
         let inverse =
-            (0..highest + 3).map(|n| S::one().scaled_by(one / DoubleDouble::from(n.max(1) as f64))).collect();
+            (0..highest + 3).map(|n| S::unevaluated(one / DoubleDouble::from(n.max(1) as f64))).collect();
         Self {
             order: highest,
             len,
@@ -46,6 +48,7 @@ impl<S: Element> Jet<S> {
             rests: [zeros(1), zeros(1)],
             t: S::zero(),
             unit: S::one(),
+            per_unit: S::one(),
             inverse,
         }
     }
@@ -71,7 +74,7 @@ impl<S: Element> Jet<S> {
         self.rests[0].copy_from_slice(state.q_compensation());
         let (v, rest) = state.velocity();
         let [_, rests] = &mut self.rests;
-        S::pass(Begin {
+        self.per_unit = S::pass(Begin {
             v,
             rest,
             unit: &unit,
@@ -101,9 +104,10 @@ struct Begin<'a, S> {
 }
 
 impl<S: Element> Pass<S> for Begin<'_, S> {
-    type Output = ();
+    /// One over the unit of time.
+    type Output = S;
     #[inline(always)]
-    fn run<V: View<S>>(self) {
+    fn run<V: View<S>>(self) -> S {
         let (v, rest, unit) = (V::view(self.v), V::view(self.rest), V::load(*self.unit));
         let n = v.len();
         let (into, rests, q) = (V::view_mut(self.into), V::view_mut(self.rests), V::view_mut(self.q));
@@ -112,6 +116,7 @@ impl<S: Element> Pass<S> for Begin<'_, S> {
             let speed = v[i] * unit;
             (into[i], q[i], rests[i]) = (speed, speed, rest[i] * unit);
         }
+        (V::one() / unit).store()
     }
 }
 

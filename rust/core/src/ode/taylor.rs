@@ -7,7 +7,9 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, LargestRoot, Missed, OwnInverse, OwnMissed, Sum, nest};
+use super::passes::series::{
+    Choice, Expanded, Judged, LargestRoot, Missed, NextUnit, OwnInverse, OwnMissed, Sum, nest,
+};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -50,8 +52,9 @@ const REFINEMENTS: usize = 1;
 pub struct TaylorStep<S: Element> {
     orders: Taylor,
     jet: Jet<S>,
-    /// The unit of time of the next expansion.
+    /// The unit of time of the next expansion, and the shortest there is.
     unit: S,
+    least: S,
     /// The shortest unit that was too long for this step.
     too_long: S,
     /// The longest step after one that led astray.
@@ -61,6 +64,8 @@ pub struct TaylorStep<S: Element> {
     rule: Rule<S>,
     /// What the step is multiplied with, for the margin.
     margin: f64,
+    /// The squared scaled size of what rates at the end of a step may miss.
+    most_missed: S,
     next: State<S>,
     /// The rates at its end.
     rates: Vec<S>,
@@ -76,7 +81,20 @@ impl<S: Controlled> TaylorStep<S> {
         let jet = Jet::new(len, orders.highest);
         let none = S::splat(f64::INFINITY);
         let (unit, h, next, rates) = (S::one(), S::zero(), state.clone(), vec![S::zero(); len]);
-        Self { orders, jet, unit, too_long: none, bound: none, h, rule, margin: 1.0, next, rates }
+        Self {
+            orders,
+            jet,
+            unit,
+            least: S::zero().power_below(),
+            too_long: none,
+            bound: none,
+            h,
+            rule,
+            margin: 1.0,
+            most_missed: none,
+            next,
+            rates,
+        }
     }
 
     /// The order for a tolerance.
@@ -89,8 +107,14 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
-    /// One over the step that the coefficients of two orders allow.
-    fn inverse_step_of(&self, pair: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
+    /// One over the step that the coefficients of two orders allow, and where they vanish.
+    fn inverse_step_of(
+        &self,
+        pair: [usize; 2],
+        state: &State<S>,
+        elapsed: &S,
+        norm: &Norm<S>,
+    ) -> (S, S::Mask) {
         if !norm.blocks.is_empty() {
             let squares = self.sizes(pair, state, elapsed, norm);
             return S::pass(LargestRoot { squares, orders: pair });
@@ -102,31 +126,31 @@ impl<S: Controlled> TaylorStep<S> {
 
     /// The squared scaled sizes of the coefficients of two orders.
     fn sizes(&self, orders: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> [S; 2] {
-        let Jet { q, v, len, unit, .. } = &self.jet;
+        let Jet { q, v, len, per_unit, .. } = &self.jet;
         let term = |of: usize| {
             let weight = |order| if of == order { S::one() } else { S::zero() };
             PairTerm { stage: of, weights: [weight(orders[0]), weight(orders[1])] }
         };
         let terms = [term(orders[0]), term(orders[1])];
         let change = |k, factor| Change { k, stride: *len, terms: &terms, factor };
-        norm.sizes(state, state, elapsed, &[change(q, S::one()), change(v, S::one() / *unit)])
+        norm.sizes(state, state, elapsed, &[change(q, S::one()), change(v, *per_unit)])
     }
 
     /// One over the longest step that the coefficients allow, in their unit of time.
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut highest = self.jet.order;
-        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+        let (mut inverse, mut untold) = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
         // numbers are measured by how far they go, one that ends with half of all coefficients.
         let last = if norm.blocks.is_empty() { self.jet.order / 2 } else { 3 };
         while highest - 2 > last {
             highest -= 2;
-            let untold = inverse.less_equal(S::zero());
             if !untold.and(running).any() {
                 break;
             }
-            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+            let (found, still) = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
             inverse = S::select(untold, found, inverse);
+            untold = untold.and(still);
         }
         inverse
     }
@@ -142,45 +166,44 @@ impl<S: Controlled> TaylorStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<S::Mask> {
         let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, .. } = self;
-        let (len, t, x) = (*len, *elapsed + *h, *h / *unit);
-        // What a rate moves a number by, in the unit of time.
-        let (of_rates, moves) = match next.form() {
-            Form::FirstOrder(_) => {
-                system.rate(&t, next.all().0, rates, ticker)?;
-                (&q[..], *unit)
-            }
-            Form::SecondOrder(_) => {
-                system.acceleration(&t, next.q(), next.v(), rates, ticker)?;
-                (&v[..], *unit * *unit)
-            }
+        let (len, highest, t) = (*len, *order, *elapsed + *h);
+        let second_order = matches!(next.form(), Form::SecondOrder(_));
+        let blocks = if second_order {
+            system.acceleration(&t, next.q(), next.v(), rates, ticker)?;
+            &v[..]
+        } else {
+            system.rate(&t, next.all().0, rates, ticker)?;
+            &q[..]
         };
-        let (highest, x) = (*order, &x);
-        S::pass(Missed { rates, blocks: of_rates, highest, x, moves: &moves });
-        // Rounding leads nobody astray.
-        let tolerance = norm.rtol.max(S::splat(ROUNDING));
+        let (x, moved) = S::pass(Missed { rates, blocks, highest, h, unit, second_order });
         let size2 = if norm.blocks.is_empty() {
-            S::pass(OwnMissed { missed: rates, blocks: q, highest, x, tolerance: &tolerance })
+            S::pass(OwnMissed { missed: rates, blocks: q, highest, x: &x, tolerance: &norm.rtol })
         } else {
             let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
             let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
-            let changes = match next.form() {
-                Form::FirstOrder(_) => [change(*x); 2],
-                Form::SecondOrder(_) => [change(*x * *x), change(*x / *unit)],
-            };
-            let rounding = norm.rtol / tolerance;
-            norm.sizes(state, next, &t, &changes)[0] * rounding * rounding
+            norm.sizes(state, next, &t, &moved.map(change))[0]
         };
-        Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
+        Ok(size2.less_equal(self.most_missed).not())
     }
 
-    /// The state at the time `x` after the expansion.
-    fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
+    /// What held attempts of the step short in these lanes holds the next one no more.
+    fn forget_bounds(&mut self, lanes: S::Mask) {
+        let none = S::splat(f64::INFINITY);
+        if lanes.all() {
+            (self.too_long, self.bound) = (none, none);
+        } else {
+            self.too_long = S::select(lanes, none, self.too_long);
+            self.bound = S::select(lanes, none, self.bound);
+        }
+    }
+
+    /// The state at the time `t` after the expansion.
+    fn state_at(jet: &Jet<S>, state: &State<S>, t: &S, into: &mut State<S>) {
         let Jet { q, v, order, rests, unit, .. } = jet;
-        let x = &(x / *unit);
         if matches!(state.form(), Form::FirstOrder(_)) {
             let (y, blocks) = (state.all(), &q[..]);
-            let (highest, factor, into) = (*order, &S::one(), into.all_mut());
-            return S::pass(Sum { y, blocks, rest: None, highest, x, factor, into });
+            let (highest, into) = (*order, into.all_mut());
+            return S::pass(Sum { y, blocks, rest: None, highest, t, unit, velocities: false, into });
         }
         let (of_q, of_v) = into.halves_mut();
         S::pass(Sum {
@@ -188,12 +211,13 @@ impl<S: Controlled> TaylorStep<S> {
             blocks: q,
             rest: Some(&rests[1]),
             highest: order + 1,
-            x,
-            factor: &S::one(),
+            t,
+            unit,
+            velocities: false,
             into: of_q,
         });
-        let factor = &(S::one() / *unit);
-        S::pass(Sum { y: state.velocity(), blocks: v, rest: None, highest: *order, x, factor, into: of_v });
+        let (y, highest) = (state.velocity(), *order);
+        S::pass(Sum { y, blocks: v, rest: None, highest, t, unit, velocities: true, into: of_v });
     }
 
     /// The coefficients of one number of a block, of the orders from one on, in powers of the fraction of the step, times
@@ -227,8 +251,10 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let share = MARGIN * Real::min(1.0, LOOSEST / rtol);
         self.margin = share.rough_power(1.0 / self.jet.order as f64);
         let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
-        self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
-        self.bound = S::select(fresh, S::splat(f64::INFINITY), self.bound);
+        // Rounding leads nobody astray: tolerances below it are as good as that.
+        let most = norm.rtol.max(S::splat(ROUNDING)) / norm.rtol * S::splat(NEXT_ORDERS);
+        self.most_missed = most * most;
+        self.forget_bounds(fresh);
         if norm.blocks.is_empty() {
             let unit = (span * S::splat(FIRST_UNIT)).power_below();
             self.unit = S::select(fresh, unit, self.unit);
@@ -257,48 +283,44 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         self.jet.begin(state, clock.elapsed, self.unit);
         system.expand(&mut self.jet, ticker)?;
         let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
-        let least = S::zero().power_below();
-        let choice = |longest: S| {
+        let choice = |bound: &S| {
             S::pass(Choice {
                 inverse: &inverse,
-                units: [&self.unit, &least],
+                units: [&self.unit, &self.least],
                 margin: self.margin,
-                longest: &longest,
+                longest: [&self.rule.max_step, bound],
                 times: [&clock.elapsed, &clock.end],
                 h: &clock.h,
                 running,
             })
         };
-        let longest = self.rule.max_step.min(self.bound);
-        let mut chosen = choice(longest);
+        let mut chosen = choice(&self.bound);
         if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
             if smooth.less(chosen[0]).and(running).any() {
-                chosen = choice(longest.min(smooth));
+                chosen = choice(&self.bound.min(smooth));
             }
         }
-        let [longest, h, size2] = chosen;
+        let [step, h, size2] = chosen;
         clock.h = h;
         self.h = S::next_step(clock, running);
-        let sound = size2.less(S::one());
-        self.too_long = S::select(sound.or(running.not()), self.too_long, self.unit);
-        let far = S::splat(FAR) * self.unit;
-        let again = far.less(longest.min(self.too_long)).and(sound);
-        let size2 = S::select(again, S::splat(HUGE), size2);
-        Self::state_at(&self.jet, state, self.h, &mut self.next);
-        let looked_at = size2.less(S::one()).and(running);
-        let astray = if looked_at.any() {
-            looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?)
-        } else {
-            S::Mask::splat(false)
-        };
-        self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
-        let size2 = S::select(astray, S::splat(HUGE), size2);
+        let (unit, too_long, far) = (&self.unit, &self.too_long, FAR);
+        let judged = S::pass(Expanded { size2: &size2, unit, too_long, step: &step, far, running });
+        let Judged { too_long, mut size2, sound, again } = judged;
+        self.too_long = too_long;
+        Self::state_at(&self.jet, state, &self.h, &mut self.next);
+        let looked_at = sound.and(again.not()).and(running);
+        if looked_at.any() {
+            let astray = looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?);
+            if astray.any() {
+                self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
+                size2 = S::select(astray, S::splat(HUGE), size2);
+            }
+        }
         let outcome = S::settle(clock, running, size2, &self.rule);
-        self.too_long = S::select(outcome.accepted, S::splat(f64::INFINITY), self.too_long);
-        self.bound = S::select(outcome.accepted, S::splat(f64::INFINITY), self.bound);
-        let next = S::select(again, far, S::select(sound, longest, clock.h));
-        self.unit = S::select(running, next.power_below(), self.unit);
+        self.forget_bounds(outcome.accepted);
+        let (unit, steps) = (&self.unit, [&step, &clock.h]);
+        self.unit = S::pass(NextUnit { unit, steps, far, sound, again, running }).power_below();
         Ok(outcome)
     }
 
@@ -315,7 +337,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         into: &mut State<S>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        Self::state_at(&self.jet, state, theta * outcome.h, into);
+        Self::state_at(&self.jet, state, &(theta * outcome.h), into);
         Ok(())
     }
 

@@ -127,6 +127,10 @@ impl Real for Lanes {
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
         scaled_by(self, coefficient)
     }
+    #[inline(always)]
+    fn unevaluated(coefficient: DoubleDouble) -> (Self, Self) {
+        (Self::splat(coefficient.high()), Self::splat(coefficient.low()))
+    }
 }
 
 impl Vector8 for Lanes {

@@ -33,6 +33,8 @@ pub const HUGE: f64 = 1e300;
 /// weights at once; each row is a vector of one to four components.
 #[derive(Debug)]
 pub struct LargestErrors<'a, S> {
+    /// The largest so far, for each set of weights.
+    pub largest: &'a mut [S; 2],
     /// How the vectors lie.
     pub shape: Shape,
     /// The state.
@@ -58,10 +60,10 @@ pub struct LargestErrors<'a, S> {
 }
 
 impl<S: Element> Pass<S> for LargestErrors<'_, S> {
-    type Output = [S; 2];
+    type Output = ();
     #[inline(always)]
-    fn run<V: View<S>>(self) -> [S; 2] {
-        let Self { shape, reference, drift, .. } = self;
+    fn run<V: View<S>>(self) {
+        let Self { largest, shape, reference, drift, .. } = self;
         let y = V::view(self.y);
         let elapsed = V::load(*self.elapsed);
         let mut place = [V::zero(); 4];
@@ -71,13 +73,15 @@ impl<S: Element> Pass<S> for LargestErrors<'_, S> {
         let tolerance = (V::view(self.atol), V::load(*self.rtol));
         let (h, terms, k) =
             (V::load(*self.h), view_terms::<S, V>(self.terms), (V::view(self.k), self.stride));
-        let [first, second] = match shape.components {
+        let sizes = match shape.components {
             1 => largest_vector_errors::<V, 1>(shape.rows, y, &place, tolerance, h, terms, k),
             2 => largest_vector_errors::<V, 2>(shape.rows, y, &place, tolerance, h, terms, k),
             3 => largest_vector_errors::<V, 3>(shape.rows, y, &place, tolerance, h, terms, k),
             _ => largest_vector_errors::<V, 4>(shape.rows, y, &place, tolerance, h, terms, k),
         };
-        [first.store(), second.store()]
+        for (largest, size) in V::view_mut(largest).iter_mut().zip(sizes) {
+            *largest = largest.max(size);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
 
-/// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
+/// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that. And where it is zero.
 #[derive(Debug)]
 pub(in crate::ode) struct LargestRoot<S> {
     /// The squares.
@@ -19,11 +19,12 @@ pub(in crate::ode) struct LargestRoot<S> {
 }
 
 impl<S: Element> Pass<S> for LargestRoot<S> {
-    type Output = S;
+    type Output = (S, S::Mask);
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
+    fn run<V: View<S>>(self) -> (S, S::Mask) {
         let squares = [V::load(self.squares[0]), V::load(self.squares[1])];
-        largest_root(squares, self.orders).store()
+        let root = largest_root(squares, self.orders);
+        (root.store(), V::own_mask(root.less_equal(V::zero())))
     }
 }
 
@@ -55,9 +56,10 @@ pub(in crate::ode) struct OwnInverse<'a, S> {
 }
 
 impl<S: Element> Pass<S> for OwnInverse<'_, S> {
-    type Output = S;
+    /// And where nothing tells of it.
+    type Output = (S, S::Mask);
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
+    fn run<V: View<S>>(self) -> (S, S::Mask) {
         let (blocks, tolerance) = (V::view(self.blocks), V::load(*self.tolerance));
         let (mut step, mut inverse) = (V::one(), V::zero());
         for _ in 0..self.times {
@@ -66,7 +68,7 @@ impl<S: Element> Pass<S> for OwnInverse<'_, S> {
             let found = V::zero().less(inverse).and(inverse.less(V::splat(HUGE)));
             step = V::select(found, V::one() / inverse, step);
         }
-        inverse.store()
+        (inverse.store(), V::own_mask(inverse.less_equal(V::zero())))
     }
 }
 
@@ -115,18 +117,23 @@ pub(in crate::ode) struct Missed<'a, S> {
     pub(in crate::ode) blocks: &'a [S],
     /// The highest order.
     pub(in crate::ode) highest: usize,
-    /// The step in that unit.
-    pub(in crate::ode) x: &'a S,
-    /// What a rate moves a number by in it.
-    pub(in crate::ode) moves: &'a S,
+    /// The step.
+    pub(in crate::ode) h: &'a S,
+    /// That unit of time.
+    pub(in crate::ode) unit: &'a S,
+    /// Whether they are accelerations, and the coefficients those of velocities in that unit.
+    pub(in crate::ode) second_order: bool,
 }
 
 impl<S: Element> Pass<S> for Missed<'_, S> {
-    type Output = ();
+    /// The step in that unit; and what it moves a coordinate and a velocity by that misses one.
+    type Output = (S, [S; 2]);
     #[inline(always)]
-    fn run<V: View<S>>(self) {
+    fn run<V: View<S>>(self) -> (S, [S; 2]) {
         let (rates, blocks) = (V::view_mut(self.rates), V::view(self.blocks));
-        let (x, moves, len) = (V::load(*self.x), V::load(*self.moves), rates.len());
+        let (unit, len) = (V::load(*self.unit), rates.len());
+        let x = V::load(*self.h) / unit;
+        let moves = if self.second_order { unit * unit } else { unit };
         for (number, rate) in rates.iter_mut().enumerate() {
             let (mut slope, mut power) = (V::zero(), V::one());
             for order in 1..=self.highest {
@@ -135,6 +142,8 @@ impl<S: Element> Pass<S> for Missed<'_, S> {
             }
             *rate = *rate * moves - slope;
         }
+        let moved = if self.second_order { [x * x, x / unit] } else { [x; 2] };
+        (x.store(), [moved[0].store(), moved[1].store()])
     }
 }
 
@@ -188,8 +197,8 @@ pub(in crate::ode) struct Choice<'a, S: Real> {
     pub(in crate::ode) units: [&'a S; 2],
     /// The share of that step that is taken.
     pub(in crate::ode) margin: f64,
-    /// The longest step.
-    pub(in crate::ode) longest: &'a S,
+    /// The longest step, by two bounds.
+    pub(in crate::ode) longest: [&'a S; 2],
     /// The time, and that of the end.
     pub(in crate::ode) times: [&'a S; 2],
     /// The step of the lanes that do not run.
@@ -213,11 +222,90 @@ impl<S: Element> Pass<S> for Choice<'_, S> {
         let step = V::select(sound, V::splat(self.margin) * unit / inverse, shorter);
         // What nothing limits goes to the end.
         let span = (end - now).abs();
-        let step = step.min(V::load(*self.longest)).min(span + span);
+        let longest = V::load(*self.longest[0]).min(V::load(*self.longest[1]));
+        let step = step.min(longest).min(span + span);
         let signed = V::select(end.less(now), -step, step);
         let signed = V::select(V::mask(self.running), signed, V::load(*self.h));
         let size2 = V::select(sound, zero, V::splat(HUGE));
         [step.store(), signed.store(), size2.store()]
+    }
+}
+
+/// What was expanded in, and whether that must be longer.
+#[derive(Debug)]
+pub(in crate::ode) struct Expanded<'a, S: Real> {
+    /// The squared error that refuses the step, if it must be.
+    pub(in crate::ode) size2: &'a S,
+    /// The unit of time.
+    pub(in crate::ode) unit: &'a S,
+    /// The shortest unit that was too long.
+    pub(in crate::ode) too_long: &'a S,
+    /// The step, without its sign.
+    pub(in crate::ode) step: &'a S,
+    /// Beyond so many units a step is expanded once more, in a longer one.
+    pub(in crate::ode) far: f64,
+    /// The lanes that run.
+    pub(in crate::ode) running: S::Mask,
+}
+
+/// What [`Expanded`] found.
+#[derive(Debug)]
+pub(in crate::ode) struct Judged<S: Real> {
+    /// The shortest unit that was too long.
+    pub(in crate::ode) too_long: S,
+    /// The squared error that refuses the step, if it must be.
+    pub(in crate::ode) size2: S,
+    /// Where the coefficients are numbers.
+    pub(in crate::ode) sound: S::Mask,
+    /// Where the motion is to be expanded once more.
+    pub(in crate::ode) again: S::Mask,
+}
+
+impl<S: Element> Pass<S> for Expanded<'_, S> {
+    type Output = Judged<S>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Judged<S> {
+        let (size2, unit, step) = (V::load(*self.size2), V::load(*self.unit), V::load(*self.step));
+        let running = V::mask(self.running);
+        let sound = size2.less(V::one());
+        let too_long = V::select(sound.or(running.not()), V::load(*self.too_long), unit);
+        let again = (V::splat(self.far) * unit).less(step.min(too_long)).and(sound);
+        let size2 = V::select(again, V::splat(HUGE), size2);
+        Judged {
+            too_long: too_long.store(),
+            size2: size2.store(),
+            sound: V::own_mask(sound),
+            again: V::own_mask(again),
+        }
+    }
+}
+
+/// In what the next step is expanded.
+#[derive(Debug)]
+pub(in crate::ode) struct NextUnit<'a, S: Real> {
+    /// The unit of time of this one.
+    pub(in crate::ode) unit: &'a S,
+    /// The step that its coefficients allowed, and the one that is tried next.
+    pub(in crate::ode) steps: [&'a S; 2],
+    /// As in [`Expanded`].
+    pub(in crate::ode) far: f64,
+    /// As in [`Judged`].
+    pub(in crate::ode) sound: S::Mask,
+    /// As in [`Judged`].
+    pub(in crate::ode) again: S::Mask,
+    /// The lanes that run.
+    pub(in crate::ode) running: S::Mask,
+}
+
+impl<S: Element> Pass<S> for NextUnit<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let unit = V::load(*self.unit);
+        let [allowed, next] = [V::load(*self.steps[0]), V::load(*self.steps[1])];
+        let near = V::select(V::mask(self.sound), allowed, next);
+        let next = V::select(V::mask(self.again), V::splat(self.far) * unit, near);
+        V::select(V::mask(self.running), next, unit).store()
     }
 }
 
@@ -231,10 +319,12 @@ pub(in crate::ode) struct Sum<'a, S> {
     pub(in crate::ode) rest: Option<&'a [S]>,
     /// The highest order, at least 2.
     pub(in crate::ode) highest: usize,
-    /// The time, in the unit of the coefficients.
-    pub(in crate::ode) x: &'a S,
-    /// A power of two.
-    pub(in crate::ode) factor: &'a S,
+    /// The time.
+    pub(in crate::ode) t: &'a S,
+    /// The unit of time of the coefficients, a power of two.
+    pub(in crate::ode) unit: &'a S,
+    /// Whether they are velocities in that unit: the factor is then one over it, else one.
+    pub(in crate::ode) velocities: bool,
     /// The result.
     pub(in crate::ode) into: PairMut<'a, S>,
 }
@@ -245,12 +335,13 @@ impl<S: Element> Pass<S> for Sum<'_, S> {
     fn run<V: View<S>>(self) {
         let (y, e) = V::pair(self.y);
         let (into, into_e) = V::pair_mut(self.into);
+        let unit = V::load(*self.unit);
         let sum = Sums {
             blocks: V::view(self.blocks),
             len: y.len(),
             highest: self.highest,
-            x: V::load(*self.x),
-            factor: V::load(*self.factor),
+            x: V::load(*self.t) / unit,
+            factor: if self.velocities { V::one() / unit } else { V::one() },
         };
         let rest = match self.rest {
             Some(rest) => V::view(rest),

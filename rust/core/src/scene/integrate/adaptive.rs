@@ -284,10 +284,12 @@ impl<'a> Run<'a> {
                 return Err(error);
             }
         };
-        // A step that was cut short by the end of a part tells little about the next.
-        let cut = outcome.finished.and(outcome.h.abs().less(before.h.abs() * Lanes::splat(0.5)));
-        let longer = cut.and(self.clock.h.abs().less(before.h.abs()));
-        self.clock.h = Lanes::select(longer, before.h, self.clock.h);
+        if outcome.finished.any() {
+            // A step that was cut short by the end of a part tells little about the next.
+            let cut = outcome.finished.and(outcome.h.abs().less(before.h.abs() * Lanes::splat(0.5)));
+            let longer = cut.and(self.clock.h.abs().less(before.h.abs()));
+            self.clock.h = Lanes::select(longer, before.h, self.clock.h);
+        }
         self.trial.keep(outcome.accepted, &mut self.state);
         for lane in 0..self.layout.units() {
             if running.lane(lane) {
@@ -335,7 +337,10 @@ impl<'a> Run<'a> {
         let slots = self.slots[..self.layout.units()].iter();
         let units: Vec<&Prepared> =
             slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
+        let index = self.slots[0].as_ref().map(|slot| slot.index);
         match &mut self.forces {
+            // The first unit of all, in all lanes, has those with which the run was made.
+            Forces::Own(_) if self.layout == Layout::Packed && index == Some(0) => {}
             Forces::Own(dynamics) => *dynamics = unit::dynamics(self.job.plan, &units, self.threads),
             Forces::Along(guided) => guided.take_up(self.job.plan, &units),
         }

@@ -12,6 +12,7 @@ use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
+use std::sync::LazyLock;
 
 /// The numbers of an order.
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +28,19 @@ struct Numbers {
 /// The recurrence of what is between two bodies.
 #[derive(Debug)]
 pub(super) struct Between {
-    numbers: [Numbers; ORDERS],
+    numbers: &'static [Numbers; ORDERS],
     softening2: f64,
 }
+
+/// They take a division each, so a short run does not make them anew.
+static NUMBERS: LazyLock<[Numbers; ORDERS]> = LazyLock::new(|| {
+    let one = DoubleDouble::from(1.0);
+    core::array::from_fn(|n| {
+        let half = DoubleDouble::from(-0.5) / DoubleDouble::from(n.max(1) as f64);
+        let twice = one / DoubleDouble::from(((n + 1) * (n + 2)) as f64);
+        Numbers { half, newest: half - one, twice: (-twice.high(), -twice.low()) }
+    })
+});
 
 /// What is between them at the start, in units of time of the series.
 struct Start<V, const C: usize> {
@@ -58,13 +69,7 @@ struct Known<V, const W: usize> {
 
 impl Between {
     pub(super) fn new(softening2: f64) -> Self {
-        let one = DoubleDouble::from(1.0);
-        let numbers = core::array::from_fn(|n| {
-            let half = DoubleDouble::from(-0.5) / DoubleDouble::from(n.max(1) as f64);
-            let twice = one / DoubleDouble::from(((n + 1) * (n + 2)) as f64);
-            Numbers { half, newest: half - one, twice: (-twice.high(), -twice.low()) }
-        });
-        Self { numbers, softening2 }
+        Self { numbers: &NUMBERS, softening2 }
     }
 
     /// Order 0.

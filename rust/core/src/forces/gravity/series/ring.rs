@@ -30,7 +30,8 @@ struct Turns {
 /// Pairs around the ring of the bodies in row 0.
 pub struct RingPairs {
     bodies: Turns,
-    kept: Kept<Lanes>,
+    shape: Shape,
+    kept: Option<Kept<Lanes>>,
     /// Two bodies.
     pair: Option<Box<Along>>,
 }
@@ -52,14 +53,15 @@ impl RingPairs {
         let turns: Vec<Turn> = (1..=n / 2).map(turn).collect();
         let softening2 =
             Lanes(core::array::from_fn(|lane| if lane < n { softening * softening } else { 1.0 }));
-        let kept = Kept::new(shape, turns.len());
         let pair = match strength {
             &[first, second] if shape.rows == 1 => {
                 Some(Box::new(Along::new([first, second], softening * softening)))
             }
             _ => None,
         };
-        Self { bodies: Turns { turns, softening2, rows: shape.rows }, kept, pair }
+        // Two bodies under nothing else need none.
+        let kept = pair.is_none().then(|| Kept::new(shape, turns.len()));
+        Self { bodies: Turns { turns, softening2, rows: shape.rows }, shape, kept, pair }
     }
 }
 
@@ -123,7 +125,8 @@ impl Series<Lanes> for RingPairs {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        one_order_tier(&self.bodies, Orders { kept: &mut self.kept, jet, n, a, first });
+        let kept = self.kept.get_or_insert_with(|| Kept::new(self.shape, self.bodies.turns.len()));
+        one_order_tier(&self.bodies, Orders { kept, jet, n, a, first });
         Ok(())
     }
     fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], _: &mut Ticker<'_>) -> Result<()> {
@@ -131,7 +134,8 @@ impl Series<Lanes> for RingPairs {
             pair.expand(jet);
             return Ok(());
         }
-        all_orders_tier(&self.bodies, Whole { kept: &mut self.kept, jet, a });
+        let kept = self.kept.get_or_insert_with(|| Kept::new(self.shape, self.bodies.turns.len()));
+        all_orders_tier(&self.bodies, Whole { kept, jet, a });
         Ok(())
     }
 }
