@@ -198,7 +198,7 @@ REFUSED = [
     (run(vv.systems.atwood(), 1.0, method="yoshida4", dt=0.1), "method", "keeps no constraints; gauss16 and dop853 do"),
     (run(PENDULUM, []), "t", "expected the end, or output times"),
     (run(PENDULUM, [[1.0]]), "t", r"an array of shape \(1, 1\)"),
-    (run(PENDULUM, [2.0, 1.0]), "t", "expected times in order from t0 = 0 on, each once"),
+    (run(PENDULUM, [2.0, 1.0]), "t", "expected times in order from t0 = 0 on"),
     (run(PENDULUM, [1.0, 1.0]), "t", "expected times in order"),
     (run(PENDULUM, [-1.0, 1.0]), "t", "expected times in order"),
     (run(PENDULUM, math.nan), "t", "expected finite numbers"),

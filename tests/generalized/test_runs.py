@@ -241,3 +241,16 @@ def test_outputs_may_be_one_time_a_list_or_the_start() -> None:
     assert np.array_equal(pendulum.run(2)["theta"], pendulum.run(2).position[:, 0])
     assert repr(pendulum.run(2)) == "GeneralizedTrajectory(theta; 2 times, t = 0 … 2, OK)"
     assert repr(pendulum) == "Lagrangian(theta; 3 parameters)"
+
+
+@pytest.mark.parametrize("method", ["auto", "gauss16", "taylor", "dop853"])
+@pytest.mark.parametrize("name", ["pendulum", "oscillator", "double_pendulum"])
+def test_a_time_asked_for_twice_is_told_twice(name: str, method: str) -> None:
+    """As in scenes: who puts lists of times together need not sort out what they share."""
+    system = getattr(vv.systems, name)()
+    once, twice = ([0.0, 1.0, 2.5], [0.0, 0.0, 1.0, 1.0, 1.0, 2.5, 2.5])
+    rows = np.searchsorted(once, twice)
+    several = system.ensemble(position=system.position + np.linspace(0.0, 0.1, 9)[:, None])
+    assert states(system.run(twice, method=method)).tolist() == states(system.run(once, method=method))[rows].tolist()
+    all_rows = several.run(once, method=method).position[:, rows]
+    assert several.run(twice, method=method).position.tolist() == all_rows.tolist()
