@@ -36,6 +36,8 @@ Sizes: TypeAlias = dict[str, tuple[int, str]]
 
 _EXACT = 2**53
 _FLOAT64 = np.dtype(np.float64)
+# Made once: a union of types takes longer to make than to ask.
+_WHOLE, _OF_NUMPY = int | np.integer, np.ndarray | np.generic
 _ADVICE = {
     "b": "a mask is not a number; pass x.astype(float) if zeros and ones are meant",
     "c": "pass x.real if the imaginary part is to be dropped",
@@ -261,7 +263,7 @@ def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**6
       ...
     visviva.errors.InvalidInput: n_events: expected a whole number, got 1000000.0; pass int(1000000.0)
     """
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+    if isinstance(value, bool) or not isinstance(value, _WHOLE):
         advice = f"; pass int({value})" if isinstance(value, float) and value.is_integer() else ""
         raise InvalidInput(name, f"expected a whole number, got {value!r}{advice}")
     if not low <= value <= high:
@@ -283,7 +285,7 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:
         raise InvalidInput(name, f"expected an array of real numbers, got {came} that is none: {error}") from None
-    if not isinstance(value, np.ndarray | np.generic) or array.dtype.kind == "O":
+    if not isinstance(value, _OF_NUMPY) or array.dtype.kind == "O":
         array = _rounded(name, array)
     kind, dtype = array.dtype.kind, array.dtype
     if kind in _ADVICE:

@@ -25,6 +25,8 @@ _SIGNATURE = "void f(double t, const double *y, double *rate), with void *data a
 _FUNCTION: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]  # ctypes names it with an underscore
 _POINTER = ctypes.POINTER(ctypes.c_double)
 _PLAIN = "void(double,double*,double*)"
+# Made once: a union of types takes longer to make than to ask.
+_WHOLE = int | np.integer
 _WITH_DATA = ("void(double,double*,double*,void*)", "void(double,double*,double*,double*)")
 
 
@@ -55,7 +57,7 @@ def compiled(fun: Any, args: object) -> Compiled | None:
     InvalidInput
         For a compiled function of another signature, and for data that it does not take.
     """
-    if isinstance(fun, int | np.integer) and not isinstance(fun, bool):
+    if isinstance(fun, _WHOLE) and not isinstance(fun, bool):
         data = _numbers(args)
         return Compiled(int(fun), None if data is None else data.ctypes.data, data)
     if isinstance(fun, _FUNCTION):

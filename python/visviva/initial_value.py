@@ -30,6 +30,8 @@ _SMALLEST_RTOL = 100 * 2.0**-52
 _COUNTABLE = 2**63
 #: Roundings of the time in the shortest step, as in SciPy.
 _ROUNDINGS = 10.0
+#: Made once: a union of types takes longer to make than to ask.
+_REAL, _ROW = float | np.floating, np.ndarray | list | tuple
 
 
 @known_keywords
@@ -245,7 +247,7 @@ def _span(t_span: object) -> tuple[float, float]:
 
 
 def _endless(value: object) -> bool:
-    return isinstance(value, float | np.floating) and math.isinf(value)
+    return isinstance(value, _REAL) and math.isinf(value)
 
 
 def _flag(name: str, value: object) -> bool:
@@ -277,7 +279,7 @@ def _state(y0: object) -> NDArray[np.float64]:
             "expected real numbers, got complex ones; give real and imaginary parts as 2n numbers, "
             "y0 = [*y.real, *y.imag], or use scipy.integrate.solve_ivp",
         )
-    if array.dtype == np.float64 and array.ndim == 1 and isinstance(y0, np.ndarray | list | tuple):
+    if array.dtype == np.float64 and array.ndim == 1 and isinstance(y0, _ROW):
         # The core judges whether they are finite.
         as_it_is = array.flags.c_contiguous and array.flags.aligned
         return array if as_it_is else np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])

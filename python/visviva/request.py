@@ -77,6 +77,9 @@ _OF_OTHERS = {
 }
 
 
+_SEQUENCE = (list, tuple)
+
+
 def _method(name: str, value: object) -> str:
     if not isinstance(value, str):
         from visviva.integrators import Method
@@ -116,12 +119,12 @@ def _tolerances(name: str, value: object) -> tuple[list[float] | None, list[floa
 
 
 def _numbers(name: str, value: object) -> list[float]:
-    several = getattr(value, "ndim", int(isinstance(value, list | tuple))) > 0
+    several = getattr(value, "ndim", int(isinstance(value, _SEQUENCE))) > 0
     return float_array(name, value, (None,)).tolist() if several else [number(name, value)]
 
 
 def _step(name: str, value: object) -> float:
-    if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
+    if isinstance(value, _SEQUENCE) or getattr(value, "ndim", 0) > 0:
         raise InvalidInput(
             name,
             "expected one number, the length of every step, got several: a symplectic method whose steps change from "
