@@ -34,10 +34,13 @@ _OF_STEPS = ("an adaptive method (verner98)",) * 2
 _OF_RIGID_BODIES = ("leaving dt out, for steps that follow rtol",) * 2
 """What may be tried beside a shorter step: where it nearly does, and where it does nothing of the kind."""
 
+_FAR = 1e3
+"""So many times the span from the time zero, a phase of a thousand turns still has ten digits."""
+
 _PACKAGE = str(Path(__file__).parent)
 
 
-def _callers_inside() -> int:
+def callers_inside() -> int:
     """How many frames from here on are of this package; the next one is the user's."""
     depth = 1
     frame = sys._getframe(1)
@@ -55,11 +58,11 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -
     """
     for place in result.pop("without_numbers", ()):
         message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
-        warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
     if "dt_beyond" in result:
         dt, span = result["dt_beyond"]
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"
-        warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
     if error <= TOLERATED:
         if "too_long" in result:
@@ -71,7 +74,17 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -
     advice = _advice(result, error, dt, order, _OF_RIGID_BODIES if rigid else _OF_POINTS)
     size = f"{error:.2g}" if error < np.inf else "more than 1e308"
     message = f"{whose}the energy at the end is off by {size} of kinetic + |potential|: {advice}"
-    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+    warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
+
+
+def resolves_nothing(result: dict[str, Any]) -> bool:
+    """Whether a run is warned of, by its energy, an orbit, a turn of a charge or a step."""
+    return result.get("energy_error", (0, 0.0))[1] > TOLERATED or "too_long" in result or "unresolved" in result
+
+
+def times_may_be_coarse(t0: float, end: float) -> bool:
+    """Whether a run is so far from the time zero, beside its span, that what forces make of times is worth a look."""
+    return max(abs(t0), abs(end)) > _FAR * abs(end - t0) > 0.0
 
 
 def _warn_of_step(result: dict[str, Any], *, ensemble: bool) -> None:
@@ -83,7 +96,7 @@ def _warn_of_step(result: dict[str, Any], *, ensemble: bool) -> None:
     advice = _advice(result, error, dt, order + 1, _OF_STEPS)
     size = f"{error:.2g} of itself" if error < np.inf else "more than 1e308"
     message = f"{whose}after {which} the velocity of body {body} is off by {size}: {advice}"
-    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+    warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
 def _warn_of_turn(result: dict[str, Any], *, ensemble: bool) -> None:
@@ -97,7 +110,7 @@ def _warn_of_turn(result: dict[str, Any], *, ensemble: bool) -> None:
         f"{whose}a turn of body {body} {place}{tight} has {steps:.3g} steps, and the method "
         f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, verner98)"
     )
-    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+    warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
 def _advice(result: dict[str, Any], error: float, dt: float | None, order: int, others: tuple[str, str]) -> str:
@@ -133,4 +146,4 @@ def warn_of_energy(dt: float | None, error: float, copy: int | None) -> None:
             "chooses its own"
         )
     message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {cause}"
-    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+    warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())

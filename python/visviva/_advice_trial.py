@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from visviva._accuracy import resolves_nothing
 from visviva._trial import run_stretch
 from visviva.errors import ConvergenceError, InvalidInput
 
@@ -145,12 +146,12 @@ def _referred(
 
 
 def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
-    """The columns of a stretch, its steps and seconds; None if it is refused or does not come to its end."""
+    """The columns of a stretch, its steps and seconds; None if refused, warned of or ended early."""
     try:
         result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
     except InvalidInput:
         return None
-    if result["error"] or result["status"].any():
+    if result["error"] or result["status"].any() or resolves_nothing(result):
         return None
     return result["columns"], result["stats"]["steps"], seconds
 

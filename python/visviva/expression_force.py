@@ -64,7 +64,9 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     Expressions of SymPy are of the symbols ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz``, ``t``, whatever they assume.
     Functions are called once with ``(position, velocity, t, **parameters)``, with expressions in the place of numbers:
     arithmetic and NumPy's functions, and no branches. All numbers are in the units of the scene; ``t`` is its own time.
-    A potential without time in it is conserved together with the kinetic energy.
+    Far from zero times are numbers that lie apart, 2.4e-7 near 1.7e9, and what changes fast from one to the next is not
+    known better (an `AccuracyWarning` says so): count time from the start of the run.
+    A potential without time in it is conserved together with the kinetic energy. ``taylor`` takes no force of the time.
 
     References
     ----------

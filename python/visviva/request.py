@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 import numpy as np
 
 from visviva import _core
-from visviva._accuracy import warn_if_unresolved
+from visviva._accuracy import times_may_be_coarse, warn_if_unresolved
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 from visviva.status import Status
@@ -340,6 +340,10 @@ def finished(
 
         look(result, asked, cast("Any", made)._scene)
     warn_if_unresolved(result, ensemble=ensemble, rigid=asked["rigid"] is not None)
+    if times_may_be_coarse(asked["t0"], asked["times"].item(-1) if asked["times"].size else asked["t0"]):
+        from visviva._coarse_times import warn_of_coarse_times
+
+        warn_of_coarse_times(cast("Any", made)._scene, asked)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

@@ -74,9 +74,7 @@ def test_what_there_is_moves_as_the_same_expression(name: str, method: dict[str,
         how = {**how, "method": "dop853"}
     if name == "drive" and how["method"] == "taylor":
         # A drive may not have begun: no series tells.
-        with pytest.raises(
-            vv.InvalidInput, match="needs the Taylor series of every force, and ExpressedForce has none"
-        ):
+        with pytest.raises(vv.InvalidInput, match="of every force, and ExpressedForce with the time in it has none"):
             vv.Scene(bodies(), expressions[0]()).run(t=2.5, **how)
         return
     wanted = vv.Scene(bodies(), own, t0=0.5).run(t=2.5, **how)

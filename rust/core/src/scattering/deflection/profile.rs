@@ -7,7 +7,7 @@
 use super::grid::{Grid, POINTS, place, radius};
 use super::search::highest;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
-use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::potentials::Potential;
 use crate::potentials::features::Features;
 use std::sync::Arc;
@@ -72,10 +72,34 @@ pub(super) struct Profile {
     power_from: f64,
 }
 
+/// Farther from one no length is looked for.
+const MOST_OCTAVES: i32 = 1000;
+
+/// So many octaves from the middle of the grid what happens is far from its ends.
+const IN_THE_MIDDLE: i32 = 32;
+
+/// The exponent of the unit of length of a potential that has none of its own: where something happens by its other
+/// parameters or, of a power of the distance, |V| is one, if that is nowhere near one.
+fn unit_of_length(potential: &dyn Potential) -> i32 {
+    let size = |exponent: i32| potential.at(power_of_two(exponent))[0].abs();
+    let place = potential.lengths().first().map_or_else(
+        || {
+            let (mut from, mut to) = (-MOST_OCTAVES, MOST_OCTAVES);
+            while to - from > 1 {
+                let middle = from + (to - from) / 2;
+                if size(middle) >= 1.0 { from = middle } else { to = middle }
+            }
+            from
+        },
+        |length| exponent(*length),
+    );
+    if place.abs() > IN_THE_MIDDLE { place } else { 0 }
+}
+
 impl Profile {
     pub(super) fn new(potential: &Arc<dyn Potential>) -> Self {
         let own = potential.own_length().map(exponent);
-        let length = own.unwrap_or(0);
+        let length = own.unwrap_or_else(|| unit_of_length(potential.as_ref()));
         let (scaled, energy) = potential.near_one(length).unwrap_or_else(|| (Arc::clone(potential), 0));
         let domain = scaled.domain().map_or([0.0, f64::INFINITY], |(first, last)| [first, last]);
         let inside = [

@@ -297,13 +297,6 @@ impl Beam {
             _ => value,
         })
     }
-    /// The value of a quantity at the middle energy, in one of the channels that have events, when b² is the fraction
-    /// `share` of b_max²; nothing of a captured one but where it came.
-    pub(super) fn value(&self, quantity: Quantity, exit: usize, share: f64) -> Option<f64> {
-        let arrival = self.straight(exit, share);
-        let half = if quantity == Quantity::ImpactParameter { None } else { self.half_angle(&arrival) };
-        self.value_at(quantity, &arrival, half)
-    }
     /// Whether a quantity is a function of one draw.
     pub(super) fn is_of_one_draw(&self, quantity: Quantity) -> bool {
         let turned = quantity.is_of_directions();

@@ -58,7 +58,8 @@ pub(super) fn check(
         |why: String| Err(Error::invalid("method", format!("{} {why}; use dop853 or verner98", method.name)));
     if let Some(force) = forces.iter().find(|force| !force.has_series()) {
         let class = force.declaration().class_name;
-        return refused(format!("needs the Taylor series of every force, and {class} has none"));
+        let of_time = if force.needs().time { " with the time in it" } else { "" };
+        return refused(format!("needs the Taylor series of every force, and {class}{of_time} has none"));
     }
     if *groups != Groups::All {
         return Ok(());

@@ -1,0 +1,61 @@
+"""A word of warning where times are too coarse for what a force of one's own makes of them.
+
+The one idea: far from zero the numbers that times are lie apart, and a fast drive changes from one to the next. Forces
+of the package count from the start of the run; of an expression nobody knows what it does with its time.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._accuracy import callers_inside
+from visviva._expression_table import looks_at_time
+from visviva.errors import AccuracyWarning, InvalidInput
+from visviva.forces import ExpressedForce
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.scene import Scene
+
+__all__ = ["warn_of_coarse_times"]
+
+_TRIED = 17
+"""Times of the run at which forces are asked."""
+
+
+def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
+    """Warn of a force that changes by more than the tolerance from one time to the next number."""
+    times = np.linspace(float(asked["t0"]), float(asked["times"][-1]), _TRIED)
+    apart = float(np.spacing(np.abs(times).max()))
+    for index, force in enumerate(scene.forces):
+        if not isinstance(force, ExpressedForce) or not looks_at_time(force.nodes):
+            continue
+        try:
+            here, beside = (_told(scene, index, times + off) for off in (0.0, apart))
+        except InvalidInput:
+            continue  # where it is not known the run itself has said so
+        largest = np.abs(here).max()
+        change = float(np.abs(beside - here).max() / largest) if largest > 0.0 else 0.0
+        if change > asked["rtol"]:
+            message = (
+                f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next forces[{index}] "
+                f"changes by {change:.2g} of itself: no method errs by less; count time from the start of the run, "
+                "with t0 = 0, and put what has gone before into a phase"
+            )
+            warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
+
+
+def _told(scene: Scene, index: int, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the accelerations of one force at the state of the scene and at several times."""
+    bodies, force = scene.particles, scene._keywords["forces"][index]
+    state: dict[str, Any] = {"mass": bodies.mass, "position": bodies.position, "velocity": bodies.velocity}
+    return np.array([_core.acceleration(forces=[force], t0=float(time), **state) for time in times])
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
