@@ -29,7 +29,8 @@ def test_a_drive_of_the_time_since_1970(t0: float, told: bool, copies: int) -> N
     assert len(messages) == told
     for message in messages:
         change = float(message.split("forces[0] changes by ")[1].split()[0])
-        assert 0.5e-5 < change < 2.5e-5
+        # 1.2e-5 and the rounding of 50 t, up to 1.5e-5; the largest of seventeen is seen, over the largest force there.
+        assert 0.5e-5 < change < 5e-5
 
 
 def test_what_counts_from_the_start_is_as_exact_there() -> None:
