@@ -12,6 +12,8 @@ use core::f64::consts::PI;
 const TRIED: u64 = 16;
 /// And so often the part next to an end is halved.
 const NEAREST: u32 = 26;
+/// The first of these halves lies in the last of those parts.
+const FARTHEST: u32 = TRIED.ilog2() + 1;
 /// What ψ changes by rounding, relative to it.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The last draw.
@@ -130,21 +132,24 @@ fn extrema(angle: &impl Fn(u64) -> Option<f64>, from: u64, to: u64) -> Vec<u64> 
     let mut tried: Vec<u64> = Vec::new();
     let width = to - from;
     // Near an end a turn is seen at its own distance from it.
-    let nearer = || (0..=NEAREST).map(|halvings| width >> halvings);
+    let nearer = || (FARTHEST..=NEAREST).map(|halvings| width >> halvings);
     tried.extend(nearer().map(|off| from + off).chain(nearer().map(|off| to - off)));
     tried.extend((0..=TRIED).map(|i| from + (u128::from(width) * u128::from(i) / u128::from(TRIED)) as u64));
     tried.sort_unstable();
     tried.dedup();
+    // What changes by no more than rounding tells nothing of rising or falling.
+    let mut told: Vec<(u64, f64)> = Vec::new();
+    for draw in tried {
+        let Some(now) = angle(draw) else { continue };
+        if told.last().is_none_or(|(_, before)| (now - before).abs() > ROUNDING * now.abs()) {
+            told.push((draw, now));
+        }
+    }
     let mut extrema = Vec::new();
-    for three in tried.windows(3) {
-        let [Some(first), Some(middle), Some(last)] = [angle(three[0]), angle(three[1]), angle(three[2])]
-        else {
-            continue;
-        };
-        let (before, after) = (middle - first, last - middle);
-        // Rounding turns all the time.
-        if before * after < 0.0 && before.abs().max(after.abs()) > ROUNDING * middle.abs() {
-            extrema.push(extremum(angle, three[0], three[2], middle > first));
+    for three in told.windows(3) {
+        let [(from, first), (_, middle), (to, last)] = [three[0], three[1], three[2]];
+        if (middle > first) != (last > middle) {
+            extrema.push(extremum(angle, from, to, middle > first));
         }
     }
     extrema.sort_unstable();
