@@ -1,0 +1,299 @@
+//! What is too narrow for a step to see: smooth walls, bumps and pulses that lie between the places where a method looks.
+//!
+//! The one idea: what is algebraic tells of itself from afar, and a step control sees it; exp and what is written with it (tanh,
+//! 1/cosh) may be nothing at two neighboring places and all that matters in between. But their arguments are seen everywhere: an
+//! argument that moves by more than a little between two places is followed on the way ([`search`]), and where the function at
+//! what it goes through changes the rates by what matters, the step is taken again, and ends before that.
+//!
+//! Of most steps the arguments at the ends and how fast they move there tell that nothing is to be followed.
+
+mod search;
+mod way;
+
+use super::model::{Model, Source};
+use super::run::Request;
+use crate::error::{Error, Result};
+use crate::expressions::assembler::compile;
+use crate::expressions::function::Function;
+use crate::expressions::graph::Dependence;
+use crate::expressions::machine::Width;
+use crate::expressions::program::{LinearSystem, Output};
+use crate::expressions::{Code, Id, Machine, Node};
+use crate::numerics::real::Mask;
+use crate::ode::step_control::Controlled;
+use crate::ode::system::{Form, Taken};
+use search::Search;
+use std::collections::HashMap;
+use std::sync::Arc;
+use way::Way;
+
+/// What ends a run with equal steps.
+pub(super) const UNSEEN: &str = "a step went over a wall, a bump or a pulse that is narrower than the step, and felt nothing of it; \
+    take a shorter dt, or leave dt out with a method that chooses its steps";
+
+/// The most that an argument may move between two places where a method looks: a bump that is e⁻³ there is felt.
+const REACH: f64 = 3.0;
+/// The same of equal steps, which are as coarse as they were asked for.
+const REACH_OF_EQUAL: f64 = 6.0;
+/// The same of a series, which knows e²⁰ times what it begins with by its last coefficients.
+const REACH_OF_SERIES: f64 = 20.0;
+/// What may be unseen in equal steps, as a part of a number.
+const UNSEEN_BY_EQUAL: f64 = 1e-3;
+/// The least part of the reach by which arguments at the ends show that nothing is to be followed.
+const SHARE: f64 = 0.5;
+
+/// Where a function of an argument is as good as constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fades {
+    /// Below [`BELOW`]: exp.
+    Below,
+    /// Beyond [`BEYOND`] on either side.
+    Beyond,
+}
+
+/// Where exp is 0.
+const BELOW: f64 = -746.0;
+/// Where tanh of half the argument differs from ±1 by less than e⁻⁸⁰.
+const BEYOND: f64 = 80.0;
+
+impl Fades {
+    /// Whether nothing changes where an argument stays within these.
+    fn holds(self, least: f64, most: f64) -> bool {
+        match self {
+            Self::Below => most < BELOW,
+            Self::Beyond => most < -BEYOND || least > BEYOND,
+        }
+    }
+}
+
+/// The functions of a model that may be too narrow for a step.
+#[derive(Debug)]
+pub struct Features {
+    /// How many arguments there are, and where functions of each fade.
+    fades: Vec<Fades>,
+    /// The argument of each function.
+    owners: Vec<usize>,
+    /// The arguments, and how fast they move, of a state and its rates.
+    ends: Arc<Code>,
+    /// The arguments and the functions, of a state.
+    values: Arc<Code>,
+    /// The right-hand side of a state and the functions' values.
+    rates: Arc<Code>,
+}
+
+impl Features {
+    /// Of a model, if it has any.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub(super) fn of(model: &mut Model) -> Result<Option<Self>> {
+        let roots = model.roots();
+        let calls = calls(&model.source, &roots);
+        if calls.is_empty() {
+            return Ok(None);
+        }
+        let (mut arguments, mut fades, mut owners): (Vec<Id>, Vec<Fades>, Vec<usize>) = Default::default();
+        for &(function, _, argument) in &calls {
+            let owner = arguments.iter().position(|&known| known == argument).unwrap_or_else(|| {
+                arguments.push(argument);
+                fades.push(if function == Function::Exp { Fades::Below } else { Fades::Beyond });
+                arguments.len() - 1
+            });
+            owners.push(owner);
+        }
+        // tanh goes as the exponential function of twice its argument.
+        let graph = &mut model.source.graph;
+        for (index, argument) in arguments.iter_mut().enumerate() {
+            let of = calls.iter().zip(&owners).filter(|(_, owner)| **owner == index);
+            let twice = of
+                .into_iter()
+                .any(|((function, ..), _)| matches!(function, Function::Tanh | Function::SechSquared));
+            *argument = graph.scale(if twice { 2.0 } else { 1.0 }, *argument);
+        }
+        let (numbers, parameters) = (model.numbers, model.source.parameters);
+        let mut motion: HashMap<Id, Id> = HashMap::new();
+        for index in 0..numbers as u32 {
+            let rate = graph.variable(numbers as u32 + index);
+            let _ = motion.insert(graph.variable(index), rate);
+        }
+        let _ = motion.insert(graph.time(), graph.constant(1.0));
+        let moving = graph.tangent(&arguments, &motion);
+        let nodes = |ids: &[Id]| ids.iter().copied().map(Output::Node).collect::<Vec<_>>();
+        let of_ends = nodes(&[&arguments[..], &moving].concat());
+        let functions: Vec<Id> = calls.iter().map(|&(_, call, _)| call).collect();
+        let of_values = nodes(&[&arguments[..], &functions].concat());
+        let ends = compile(graph, (2 * numbers, parameters), &[], &of_ends)?;
+        let values = compile(graph, (numbers, parameters), &[], &of_values)?;
+        let rates = with_values(model, &roots, &functions)?;
+        let [ends, values, rates] = [ends, values, rates].map(Arc::new);
+        Ok(Some(Self { fades, owners, ends, values, rates }))
+    }
+}
+
+/// The calls of functions like exp among these expressions, with their arguments, where those change on the way.
+fn calls(source: &Source, roots: &[Id]) -> Vec<(Function, Id, Id)> {
+    let graph = &source.graph;
+    let like_exp = |id: Id| match *graph.node(id) {
+        Node::Call(
+            function @ (Function::Exp
+            | Function::Tanh
+            | Function::SechSquared
+            | Function::Sinh
+            | Function::Cosh),
+            argument,
+        ) if graph.dependence(argument) > Dependence::Parameters => Some((function, id, argument)),
+        _ => None,
+    };
+    graph.reachable(roots).into_iter().filter_map(like_exp).collect()
+}
+
+/// The right-hand side with the values of these calls as further numbers of the state.
+fn with_values(model: &mut Model, roots: &[Id], calls: &[Id]) -> Result<Code> {
+    let numbers = model.numbers;
+    let graph = &mut model.source.graph;
+    let mut replaced: HashMap<Id, Id> = HashMap::new();
+    for (index, &call) in calls.iter().enumerate() {
+        let _ = replaced.insert(call, graph.variable((numbers + index) as u32));
+    }
+    let made: HashMap<Id, Id> = roots.iter().copied().zip(graph.substitute(roots, &replaced)).collect();
+    let of = |id: &Id| made.get(id).copied().unwrap_or(*id);
+    let systems: Vec<LinearSystem> = model
+        .systems
+        .iter()
+        .map(|system| LinearSystem {
+            matrix: system.matrix.iter().map(|row| row.iter().map(of).collect()).collect(),
+            right: system.right.iter().map(of).collect(),
+            inner: system.inner,
+        })
+        .collect();
+    let rate = |rate: &Output| match rate {
+        Output::Node(id) => Output::Node(of(id)),
+        Output::Unknown(index) => Output::Unknown(*index),
+    };
+    let rates: Vec<Output> = model.rates.iter().map(rate).collect();
+    compile(&model.source.graph, (numbers + calls.len(), model.source.parameters), &systems, &rates)
+}
+
+/// Features under watch, of one trajectory or of eight.
+#[derive(Debug)]
+pub(super) struct Narrow<S> {
+    of: Arc<Features>,
+    form: Form,
+    ends: Machine<S>,
+    parameters: Vec<S>,
+    /// The time at the start of the run.
+    t0: f64,
+    /// What may be unseen, as a part of a number.
+    tolerance: f64,
+    /// Whether steps are equal, and cannot be shorter.
+    equal: bool,
+    /// Arguments at the beginning of a step and how fast they move there.
+    before: Vec<S>,
+    search: Option<Search>,
+}
+
+impl<S: Width + Controlled> Narrow<S> {
+    /// Of a run with these parameters.
+    pub(super) fn new(of: &Arc<Features>, form: Form, request: &Request, parameters: &[S]) -> Self {
+        let equal = request.dt.is_some();
+        Self {
+            of: of.clone(),
+            form,
+            ends: Machine::new(of.ends.clone(), parameters),
+            parameters: parameters.to_vec(),
+            t0: request.span.0,
+            tolerance: if equal { UNSEEN_BY_EQUAL } else { request.rtol },
+            equal,
+            before: vec![S::zero(); of.ends.outputs()],
+            search: None,
+        }
+    }
+
+    /// With other parameters from now on.
+    pub(super) fn set_parameters(&mut self, parameters: &[S]) {
+        self.parameters.copy_from_slice(parameters);
+        self.ends.set_parameters(parameters);
+    }
+
+    /// How far an argument may move between two places where a step looks.
+    fn reach(&self, step: &Taken<'_, S>) -> f64 {
+        match (self.equal, step.series) {
+            (true, _) => REACH_OF_EQUAL,
+            (_, true) => REACH_OF_SERIES,
+            _ => REACH,
+        }
+    }
+
+    /// [`System::seen_until`](crate::ode::system::System::seen_until).
+    ///
+    /// # Errors
+    /// [`Error::Convergence`] of one trajectory with equal steps.
+    pub(super) fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<S> {
+        let mut seen = S::one();
+        let followed = step.asked.and(self.move_little(step).not());
+        if !followed.any() {
+            return Ok(seen);
+        }
+        let followed = S::select(followed, S::one(), S::zero());
+        for lane in (0..S::LANES).filter(|&lane| followed.lane(lane) > 0.0) {
+            let way = Way::of(self.form, step, lane, self.t0);
+            let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
+            let (of, reach) = (&self.of, self.reach(step));
+            let search = self.search.get_or_insert_with(|| Search::new(of));
+            let part = search.seen_until(&parameters, way, reach, self.tolerance);
+            seen = seen.with_lane(lane, part);
+        }
+        if self.equal && S::LANES == 1 && seen.lane(0) < 1.0 {
+            return Err(Error::Convergence { message: UNSEEN.to_owned(), time: self.t0 + step.from.lane(0) });
+        }
+        Ok(seen)
+    }
+
+    /// Where arguments at the ends of the step, and how fast they move there, tell that nothing is to be followed.
+    fn move_little(&mut self, step: &Taken<'_, S>) -> S::Mask {
+        let little = S::splat(SHARE * self.reach(step));
+        let arguments = self.of.fades.len();
+        for end in 0..2 {
+            self.enter(step, end);
+            let t = if end == 0 { step.from } else { step.from + step.h };
+            self.ends.run(S::splat(self.t0) + t);
+            if end == 0 {
+                for (index, before) in self.before.iter_mut().enumerate() {
+                    *before = self.ends.output(index);
+                }
+            }
+        }
+        let mut all = S::Mask::splat(true);
+        let third = step.h * S::splat(1.0 / 3.0);
+        for (index, fades) in self.of.fades.iter().enumerate() {
+            let [u, v] = [self.before[index], self.ends.output(index)];
+            let [du, dv] = [self.before[arguments + index], self.ends.output(arguments + index)];
+            let [first, second] = [u + du * third, v - dv * third];
+            // A cubic stays within these four.
+            let (least, most) = (u.min(v).min(first.min(second)), u.max(v).max(first.max(second)));
+            let moved = (most - least).less_equal(little);
+            let faded = match fades {
+                Fades::Below => most.less(S::splat(BELOW)),
+                Fades::Beyond => most.less(S::splat(-BEYOND)).or(S::splat(BEYOND).less(least)),
+            };
+            all = all.and(moved.or(faded));
+        }
+        all
+    }
+
+    /// Enters the state at an end of a step, and its rates.
+    fn enter(&mut self, step: &Taken<'_, S>, end: usize) {
+        let (y, into) = (step.ends[end], self.ends.state());
+        let (numbers, rates) = into.split_at_mut(y.len());
+        numbers.copy_from_slice(y);
+        let n = y.len() / 2;
+        let per_time = S::one() / step.h;
+        for (index, rate) in rates.iter_mut().enumerate() {
+            *rate = match (self.form, &step.rates) {
+                (Form::SecondOrder(_), _) if index < n => y[n + index],
+                (_, Some(known)) => known[end][known[end].len() + index - y.len()],
+                (_, None) => (step.ends[1][index] - step.ends[0][index]) * per_time,
+            };
+        }
+    }
+}
