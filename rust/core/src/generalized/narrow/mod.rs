@@ -7,6 +7,7 @@
 //!
 //! Of most steps the arguments at the ends and how fast they move there tell that nothing is to be followed.
 
+mod ends;
 mod search;
 mod way;
 
@@ -18,10 +19,11 @@ use crate::expressions::function::Function;
 use crate::expressions::graph::Dependence;
 use crate::expressions::machine::Width;
 use crate::expressions::program::{LinearSystem, Output};
-use crate::expressions::{Code, Id, Machine, Node};
+use crate::expressions::{Code, Id, Node};
 use crate::numerics::real::Mask;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
+use ends::Ends;
 use search::Search;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -92,24 +94,23 @@ impl Features {
         if calls.is_empty() {
             return Ok(None);
         }
-        let (mut arguments, mut fades, mut owners): (Vec<Id>, Vec<Fades>, Vec<usize>) = Default::default();
-        for &(function, _, argument) in &calls {
-            let owner = arguments.iter().position(|&known| known == argument).unwrap_or_else(|| {
-                arguments.push(argument);
-                fades.push(if function == Function::Exp { Fades::Below } else { Fades::Beyond });
-                arguments.len() - 1
-            });
-            owners.push(owner);
-        }
+        let mut arguments: Vec<Id> = calls.iter().map(|&(.., argument)| argument).collect();
+        arguments.sort_unstable();
+        arguments.dedup();
+        let owner = |argument: &Id| arguments.binary_search(argument).unwrap_or_default();
+        let owners: Vec<usize> = calls.iter().map(|(.., argument)| owner(argument)).collect();
+        let of = |index: usize, is: &dyn Fn(Function) -> bool| {
+            calls.iter().zip(&owners).any(|((function, ..), owner)| *owner == index && is(*function))
+        };
+        let is_exp = |function| function == Function::Exp;
+        let fade = |index| if of(index, &is_exp) { Fades::Below } else { Fades::Beyond };
+        let fades: Vec<Fades> = (0..arguments.len()).map(fade).collect();
         // tanh goes as the exponential function of twice its argument.
+        let is_tanh = |function| matches!(function, Function::Tanh | Function::SechSquared);
+        let factor = |index| if of(index, &is_tanh) { 2.0 } else { 1.0 };
         let graph = &mut model.source.graph;
-        for (index, argument) in arguments.iter_mut().enumerate() {
-            let of = calls.iter().zip(&owners).filter(|(_, owner)| **owner == index);
-            let twice = of
-                .into_iter()
-                .any(|((function, ..), _)| matches!(function, Function::Tanh | Function::SechSquared));
-            *argument = graph.scale(if twice { 2.0 } else { 1.0 }, *argument);
-        }
+        let scaled = |(index, argument): (usize, &Id)| graph.scale(factor(index), *argument);
+        let arguments: Vec<Id> = arguments.iter().enumerate().map(scaled).collect();
         let (numbers, parameters) = (model.numbers, model.source.parameters);
         let mut motion: HashMap<Id, Id> = HashMap::new();
         for index in 0..numbers as u32 {
@@ -179,7 +180,7 @@ fn with_values(model: &mut Model, roots: &[Id], calls: &[Id]) -> Result<Code> {
 pub(super) struct Narrow<S> {
     of: Arc<Features>,
     form: Form,
-    ends: Machine<S>,
+    ends: Ends<S>,
     parameters: Vec<S>,
     /// The time at the start of the run.
     t0: f64,
@@ -187,8 +188,6 @@ pub(super) struct Narrow<S> {
     tolerance: f64,
     /// Whether steps are equal, and cannot be shorter.
     equal: bool,
-    /// Arguments at the beginning of a step and how fast they move there.
-    before: Vec<S>,
     search: Option<Search>,
 }
 
@@ -199,12 +198,11 @@ impl<S: Width + Controlled> Narrow<S> {
         Self {
             of: of.clone(),
             form,
-            ends: Machine::new(of.ends.clone(), parameters),
+            ends: Ends::new(form, &of.ends, parameters),
             parameters: parameters.to_vec(),
             t0: request.span.0,
             tolerance: if equal { UNSEEN_BY_EQUAL } else { request.rtol },
             equal,
-            before: vec![S::zero(); of.ends.outputs()],
             search: None,
         }
     }
@@ -230,12 +228,13 @@ impl<S: Width + Controlled> Narrow<S> {
     /// [`Error::Convergence`] of one trajectory with equal steps.
     pub(super) fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<S> {
         let mut seen = S::one();
-        let followed = step.asked.and(self.move_little(step).not());
-        if !followed.any() {
+        let little = SHARE * self.reach(step);
+        let told = self.ends.tell(step, self.t0, little, &self.of.fades);
+        if told.less_equal(S::zero()).not().or(step.asked.not()).all() {
             return Ok(seen);
         }
-        let followed = S::select(followed, S::one(), S::zero());
-        for lane in (0..S::LANES).filter(|&lane| followed.lane(lane) > 0.0) {
+        let told = S::select(step.asked, told, S::one());
+        for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
             let way = Way::of(self.form, step, lane, self.t0);
             let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
             let (of, reach) = (&self.of, self.reach(step));
@@ -247,53 +246,5 @@ impl<S: Width + Controlled> Narrow<S> {
             return Err(Error::Convergence { message: UNSEEN.to_owned(), time: self.t0 + step.from.lane(0) });
         }
         Ok(seen)
-    }
-
-    /// Where arguments at the ends of the step, and how fast they move there, tell that nothing is to be followed.
-    fn move_little(&mut self, step: &Taken<'_, S>) -> S::Mask {
-        let little = S::splat(SHARE * self.reach(step));
-        let arguments = self.of.fades.len();
-        for end in 0..2 {
-            self.enter(step, end);
-            let t = if end == 0 { step.from } else { step.from + step.h };
-            self.ends.run(S::splat(self.t0) + t);
-            if end == 0 {
-                for (index, before) in self.before.iter_mut().enumerate() {
-                    *before = self.ends.output(index);
-                }
-            }
-        }
-        let mut all = S::Mask::splat(true);
-        let third = step.h * S::splat(1.0 / 3.0);
-        for (index, fades) in self.of.fades.iter().enumerate() {
-            let [u, v] = [self.before[index], self.ends.output(index)];
-            let [du, dv] = [self.before[arguments + index], self.ends.output(arguments + index)];
-            let [first, second] = [u + du * third, v - dv * third];
-            // A cubic stays within these four.
-            let (least, most) = (u.min(v).min(first.min(second)), u.max(v).max(first.max(second)));
-            let moved = (most - least).less_equal(little);
-            let faded = match fades {
-                Fades::Below => most.less(S::splat(BELOW)),
-                Fades::Beyond => most.less(S::splat(-BEYOND)).or(S::splat(BEYOND).less(least)),
-            };
-            all = all.and(moved.or(faded));
-        }
-        all
-    }
-
-    /// Enters the state at an end of a step, and its rates.
-    fn enter(&mut self, step: &Taken<'_, S>, end: usize) {
-        let (y, into) = (step.ends[end], self.ends.state());
-        let (numbers, rates) = into.split_at_mut(y.len());
-        numbers.copy_from_slice(y);
-        let n = y.len() / 2;
-        let per_time = S::one() / step.h;
-        for (index, rate) in rates.iter_mut().enumerate() {
-            *rate = match (self.form, &step.rates) {
-                (Form::SecondOrder(_), _) if index < n => y[n + index],
-                (_, Some(known)) => known[end][known[end].len() + index - y.len()],
-                (_, None) => (step.ends[1][index] - step.ends[0][index]) * per_time,
-            };
-        }
     }
 }

@@ -122,6 +122,13 @@ impl Search {
                     points.push(self.turning(way, argument, (places[j - 1], places[j + 1]), before > after));
                 }
             }
+            // What turns right behind the beginning or before the end is on one side of it at all samples.
+            let last = values.len() - 1;
+            for (edge, inner) in [(0, 1), (last, last - 1)] {
+                let (near, far) = (edge.min(inner), edge.max(inner));
+                let is_top = values[edge] > values[inner];
+                points.push(self.turning(way, argument, (places[near], places[far]), is_top));
+            }
             points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
             for looks in way.nodes.windows(2) {
                 let between: Vec<Point> =
