@@ -20,8 +20,8 @@ pub(super) struct FixedSteps<S: Controlled> {
     h: f64,
     node: u64,
     next: State<S>,
-    /// The parts of the steps tried last up to which nothing lies between their nodes.
-    pub(super) seen: S,
+    /// The parts of the steps tried last up to which nothing lies between their nodes, if something does.
+    pub(super) seen: Option<S>,
 }
 
 impl<S: Controlled> FixedSteps<S> {
@@ -33,7 +33,7 @@ impl<S: Controlled> FixedSteps<S> {
     ) -> Result<Self> {
         let mut stepper = stepper(method, h, system, state)?;
         stepper.look_back();
-        Ok(Self { stepper, h, node: 0, next: state.clone(), seen: S::one() })
+        Ok(Self { stepper, h, node: 0, next: state.clone(), seen: None })
     }
 }
 

@@ -138,8 +138,8 @@ impl<S: Width + Coefficient + Controlled> System<S> for Motion<S> {
         Ok(())
     }
 
-    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<S> {
-        self.narrow.as_mut().map_or(Ok(S::one()), |narrow| narrow.seen_until(step))
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        self.narrow.as_mut().map_or(Ok(None), |narrow| narrow.seen_until(step))
     }
 
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {

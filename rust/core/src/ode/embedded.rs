@@ -46,8 +46,8 @@ pub struct EmbeddedStep<S: Element> {
     next: State<S>,
     /// Where its stages look.
     nodes: Vec<f64>,
-    /// The part of the step tried last up to which nothing lies between those.
-    seen: S,
+    /// The part of the step tried last up to which nothing lies between those, if something does.
+    seen: Option<S>,
 }
 
 impl<S: Controlled> EmbeddedStep<S> {
@@ -82,13 +82,13 @@ impl<S: Controlled> EmbeddedStep<S> {
             rule,
             next: state.clone(),
             nodes: tableau.c.iter().map(|c| c.to_f64()).collect(),
-            seen: S::one(),
+            seen: None,
         }
     }
 
     /// Evaluations in a lane of the step tried last that its refusal hides.
     pub(crate) fn hidden(&self, lane: usize) -> u64 {
-        u64::from(self.seen.lane(lane) < 1.0 && !self.end_in_estimate)
+        u64::from(!self.end_in_estimate && self.seen.as_ref().is_some_and(|seen| seen.lane(lane) < 1.0))
     }
 
     /// The stage that holds the derivative at the end of the step.

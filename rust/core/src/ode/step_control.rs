@@ -199,7 +199,7 @@ pub trait Controlled: Element {
     /// The first lane, as a double.
     fn first_lane(self) -> f64;
     /// A lane, as a double.
-    fn lane(self, lane: usize) -> f64;
+    fn lane(&self, lane: usize) -> f64;
     /// The same with another number in a lane.
     #[must_use]
     fn with_lane(self, lane: usize, number: f64) -> Self;
@@ -230,7 +230,7 @@ macro_rules! controlled {
             fn first_lane(self) -> f64 {
                 DoubleDouble::from(self).to_f64()
             }
-            fn lane(self, _: usize) -> f64 {
+            fn lane(&self, _: usize) -> f64 {
                 self.first_lane()
             }
             fn with_lane(self, _: usize, number: f64) -> Self {
@@ -303,7 +303,7 @@ impl Controlled for Lanes {
     fn first_lane(self) -> f64 {
         self.0[0]
     }
-    fn lane(self, lane: usize) -> f64 {
+    fn lane(&self, lane: usize) -> f64 {
         self.0[lane]
     }
     fn with_lane(mut self, lane: usize, number: f64) -> Self {

@@ -158,14 +158,14 @@ pub trait System<S: Element>: Send {
         None
     }
 
-    /// The part of a step up to which nothing that matters lies between the places where the method looks: 1 if that holds for
-    /// all of it.
+    /// The part of a step up to which nothing that matters lies between the places where the method looks, 1 in lanes where that
+    /// holds for all of it; nothing if it does in all.
     ///
     /// # Errors
     /// [`Error::Convergence`] where no shorter step can be taken.
-    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<S> {
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let _ = step;
-        Ok(S::one())
+        Ok(None)
     }
 
     /// How long a step of a system of the second order may be from a state with these accelerations, if something on the

@@ -338,14 +338,15 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         };
         self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
         let looked_at = looked_at.and(astray.not());
-        let seen = if looked_at.any() {
-            system
-                .seen_until(&self.taken(looked_at, state, clock.elapsed, &|lane| self.visited(state, lane)))?
-        } else {
-            S::one()
-        };
-        let unseen = looked_at.and(seen.less(S::one()));
-        self.bound = S::select(unseen, self.h.abs() * seen, self.bound);
+        let mut unseen = S::Mask::splat(false);
+        if looked_at.any() {
+            let visited = |lane: usize| self.visited(state, lane);
+            let seen = system.seen_until(&self.taken(looked_at, state, clock.elapsed, &visited))?;
+            if let Some(seen) = seen {
+                unseen = seen.less(S::one());
+                self.bound = S::select(unseen, self.h.abs() * seen, self.bound);
+            }
+        }
         let astray = astray.or(unseen);
         let size2 = S::select(astray, S::splat(HUGE), size2);
         let outcome = S::settle(clock, running, size2, &self.rule);

@@ -37,7 +37,7 @@ impl SideBySide for EmbeddedStep<Lanes> {
 impl SideBySide for TaylorStep<Lanes> {}
 impl SideBySide for FixedSteps<Lanes> {
     fn lost(&mut self, lane: usize) -> Option<String> {
-        (self.seen.0[lane] < 1.0).then(|| UNSEEN.to_owned())
+        self.seen.is_some_and(|seen| seen.0[lane] < 1.0).then(|| UNSEEN.to_owned())
     }
 }
 

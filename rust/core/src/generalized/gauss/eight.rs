@@ -194,7 +194,9 @@ impl GaussEight {
         };
         let nodes = &table.c.0[..table.stages];
         let visited = Some(&visited as &dyn Fn(usize) -> Visited);
-        system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })
+        let seen =
+            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+        Ok(seen.unwrap_or(Lanes::one()))
     }
 
     /// Looks for what motions from rest are measured by, in the lanes of the mask, over the spans of their runs.

@@ -198,7 +198,9 @@ impl GaussStep {
             |_: usize| table.visited(*form, ends.map(|end| end.to_vec()), h, |i, k| stages.rates[i].0[k]);
         let nodes = &table.c.0[..table.stages];
         let (asked, visited) = (true, Some(&visited as &dyn Fn(usize) -> Visited));
-        system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })
+        let seen =
+            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+        Ok(seen.unwrap_or(1.0))
     }
 
     /// By how much the rates at the end of the step, and at the beginning of the first, are not those that the stages lead to,

@@ -47,38 +47,49 @@ impl<S: Width + Controlled> Ends<S> {
         self.machine.set_parameters(parameters);
     }
 
-    /// Where nothing is to be followed, as arguments move by less than `little` or where functions have faded: 1, and 0 elsewhere.
-    /// What is not asked of leaves no trace: a lane knows what a trajectory alone does.
-    pub(super) fn tell(&mut self, step: &Taken<'_, S>, t0: f64, little: f64, fades: &[Fades]) -> S {
+    /// How fast arguments move at most, if they all do so steadily.
+    pub(super) fn fastest(&mut self) -> S {
+        self.machine.run(S::zero());
+        let rates = self.before.len() / 2..self.before.len();
+        rates.fold(S::zero(), |most, index| most.max(self.machine.output(index).abs()))
+    }
+
+    /// Where nothing is to be followed, as arguments move by less than `little` or where functions have faded: 1, and 0 elsewhere;
+    /// nothing if that is all. What is not asked of leaves no trace: a lane knows what a trajectory alone does.
+    pub(super) fn tell(&mut self, step: &Taken<'_, S>, t0: f64, little: f64, fades: &[Fades]) -> Option<S> {
         let (of, time) = (step.ends[0], &self.time);
-        let known = S::pass(Known { of, state: &self.state, times: [&step.from, time], h: &step.h });
-        let known = S::one().less_equal(known);
+        let (known, all) = S::pass(Known { of, state: &self.state, times: [&step.from, time], h: &step.h });
         self.before.copy_from_slice(&self.kept);
-        if !known.all() {
-            self.run(step, 0, t0);
+        if !all {
+            self.run(step, 0, step.from, t0);
+            let known = S::one().less_equal(known);
             for (index, value) in self.before.iter_mut().enumerate() {
                 *value = S::select(known, *value, self.machine.output(index));
             }
         }
-        self.run(step, 1, t0);
+        let end = step.from + step.h;
+        self.run(step, 1, end, t0);
         for (index, value) in self.after.iter_mut().enumerate() {
             *value = self.machine.output(index);
         }
         if step.asked.all() {
             self.kept.copy_from_slice(&self.after);
             self.state.copy_from_slice(step.ends[1]);
+            self.time = end;
         } else {
             let of_numbers = self.state.iter_mut().zip(step.ends[1]);
             for (kept, &new) in self.kept.iter_mut().zip(&self.after).chain(of_numbers) {
                 *kept = S::select(step.asked, new, *kept);
             }
+            self.time = S::select(step.asked, end, self.time);
         }
-        self.time = S::select(step.asked, step.from + step.h, self.time);
-        S::pass(Little { before: &self.before, after: &self.after, fades, h: &step.h, little })
+        let (told, all) =
+            S::pass(Little { before: &self.before, after: &self.after, fades, h: &step.h, little });
+        (!all).then_some(told)
     }
 
     /// Runs the code at an end of a step.
-    fn run(&mut self, step: &Taken<'_, S>, end: usize, t0: f64) {
+    fn run(&mut self, step: &Taken<'_, S>, end: usize, t: S, t0: f64) {
         let y = step.ends[end];
         let (numbers, rates) = self.machine.state().split_at_mut(y.len());
         numbers.copy_from_slice(y);
@@ -94,7 +105,6 @@ impl<S: Width + Controlled> Ends<S> {
                 *rate = (step.ends[1][index] - step.ends[0][index]) * per_time;
             }
         }
-        let t = if end == 0 { step.from } else { step.from + step.h };
         self.machine.run(S::splat(t0) + t);
     }
 }
@@ -108,9 +118,9 @@ struct Known<'a, S> {
 }
 
 impl<S: Controlled> Pass<S> for Known<'_, S> {
-    type Output = S;
+    type Output = (S, bool);
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
+    fn run<V: View<S>>(self) -> (S, bool) {
         let [now, then] = [V::load(*self.times[0]), V::load(*self.times[1])];
         // The first step of a run is another's.
         let begun = V::zero().less(now.abs());
@@ -118,7 +128,7 @@ impl<S: Controlled> Pass<S> for Known<'_, S> {
         for (&a, &b) in V::view(self.of).iter().zip(V::view(self.state)) {
             same = same.and((a - b).abs().less_equal(V::zero()));
         }
-        V::select(same, V::one(), V::zero()).store()
+        (V::select(same, V::one(), V::zero()).store(), same.all())
     }
 }
 
@@ -132,9 +142,9 @@ struct Little<'a, S> {
 }
 
 impl<S: Controlled> Pass<S> for Little<'_, S> {
-    type Output = S;
+    type Output = (S, bool);
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
+    fn run<V: View<S>>(self) -> (S, bool) {
         let (before, after) = (V::view(self.before), V::view(self.after));
         let third = V::load(*self.h) * V::splat(1.0 / 3.0);
         let (arguments, little) = (self.fades.len(), V::splat(self.little));
@@ -149,9 +159,10 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
             let faded = match fades {
                 Fades::Below => most.less(below),
                 Fades::Beyond => most.less(under).or(beyond.less(least)),
+                Fades::Nowhere => most.less(least),
             };
             all = all.and((most - least).less_equal(little).or(faded));
         }
-        V::select(all, V::one(), V::zero()).store()
+        (V::select(all, V::one(), V::zero()).store(), all.all())
     }
 }

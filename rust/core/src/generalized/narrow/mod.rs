@@ -30,7 +30,7 @@ use std::sync::Arc;
 use way::Way;
 
 /// What ends a run with equal steps.
-pub(super) const UNSEEN: &str = "a step went over a wall, a bump or a pulse that is narrower than the step, and felt nothing of it; \
+pub(super) const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscillation that is narrower than the step, and felt nothing of it; \
     take a shorter dt, or leave dt out with a method that chooses its steps";
 
 /// The most that an argument may move between two places where a method looks: a bump that is e⁻³ there is felt.
@@ -51,6 +51,8 @@ pub(super) enum Fades {
     Below,
     /// Beyond [`BEYOND`] on either side.
     Beyond,
+    /// Nowhere: sin and cos.
+    Nowhere,
 }
 
 /// Where exp is 0.
@@ -64,6 +66,7 @@ impl Fades {
         match self {
             Self::Below => most < BELOW,
             Self::Beyond => most < -BEYOND || least > BEYOND,
+            Self::Nowhere => false,
         }
     }
 }
@@ -71,8 +74,10 @@ impl Fades {
 /// The functions of a model that may be too narrow for a step.
 #[derive(Debug)]
 pub struct Features {
-    /// How many arguments there are, and where functions of each fade.
+    /// Where functions of each argument fade.
     fades: Vec<Fades>,
+    /// Whether all arguments move as steadily as the time.
+    steady: bool,
     /// The argument of each function.
     owners: Vec<usize>,
     /// The arguments, and how fast they move, of a state and its rates.
@@ -103,7 +108,12 @@ impl Features {
             calls.iter().zip(&owners).any(|((function, ..), owner)| *owner == index && is(*function))
         };
         let is_exp = |function| function == Function::Exp;
-        let fade = |index| if of(index, &is_exp) { Fades::Below } else { Fades::Beyond };
+        let turns = |function| matches!(function, Function::Sin | Function::Cos);
+        let fade = |index| match (of(index, &turns), of(index, &is_exp)) {
+            (true, _) => Fades::Nowhere,
+            (_, true) => Fades::Below,
+            _ => Fades::Beyond,
+        };
         let fades: Vec<Fades> = (0..arguments.len()).map(fade).collect();
         // tanh goes as the exponential function of twice its argument.
         let is_tanh = |function| matches!(function, Function::Tanh | Function::SechSquared);
@@ -119,6 +129,7 @@ impl Features {
         }
         let _ = motion.insert(graph.time(), graph.constant(1.0));
         let moving = graph.tangent(&arguments, &motion);
+        let steady = moving.iter().all(|&rate| graph.dependence(rate) <= Dependence::Parameters);
         let nodes = |ids: &[Id]| ids.iter().copied().map(Output::Node).collect::<Vec<_>>();
         let of_ends = nodes(&[&arguments[..], &moving].concat());
         let functions: Vec<Id> = calls.iter().map(|&(_, call, _)| call).collect();
@@ -127,25 +138,27 @@ impl Features {
         let values = compile(graph, (numbers, parameters), &[], &of_values)?;
         let rates = with_values(model, &roots, &functions)?;
         let [ends, values, rates] = [ends, values, rates].map(Arc::new);
-        Ok(Some(Self { fades, owners, ends, values, rates }))
+        Ok(Some(Self { fades, steady, owners, ends, values, rates }))
     }
 }
 
-/// The calls of functions like exp among these expressions, with their arguments, where those change on the way.
+/// The calls of functions like exp among these expressions, with their arguments, where those change on the way; and those of
+/// sin and cos where the time alone changes them, as drives do: they may be faster than a step, and too weak for its errors.
 fn calls(source: &Source, roots: &[Id]) -> Vec<(Function, Id, Id)> {
     let graph = &source.graph;
-    let like_exp = |id: Id| match *graph.node(id) {
-        Node::Call(
-            function @ (Function::Exp
-            | Function::Tanh
-            | Function::SechSquared
-            | Function::Sinh
-            | Function::Cosh),
-            argument,
-        ) if graph.dependence(argument) > Dependence::Parameters => Some((function, id, argument)),
-        _ => None,
+    let may_be_narrow = |id: Id| {
+        let Node::Call(function, argument) = *graph.node(id) else { return None };
+        let changes = graph.dependence(argument);
+        let may = match function {
+            Function::Exp | Function::Tanh | Function::SechSquared | Function::Sinh | Function::Cosh => {
+                changes > Dependence::Parameters
+            }
+            Function::Sin | Function::Cos => changes == Dependence::Time,
+            _ => false,
+        };
+        may.then_some((function, id, argument))
     };
-    graph.reachable(roots).into_iter().filter_map(like_exp).collect()
+    graph.reachable(roots).into_iter().filter_map(may_be_narrow).collect()
 }
 
 /// The right-hand side with the values of these calls as further numbers of the state.
@@ -189,13 +202,17 @@ pub(super) struct Narrow<S> {
     /// Whether steps are equal, and cannot be shorter.
     equal: bool,
     search: Option<Search>,
+    /// The longest part of a step between two places where the method looks, and how fast arguments move in it at most, if all
+    /// of them do so steadily.
+    gap: Option<f64>,
+    fastest: S,
 }
 
 impl<S: Width + Controlled> Narrow<S> {
     /// Of a run with these parameters.
     pub(super) fn new(of: &Arc<Features>, form: Form, request: &Request, parameters: &[S]) -> Self {
         let equal = request.dt.is_some();
-        Self {
+        let mut narrow = Self {
             of: of.clone(),
             form,
             ends: Ends::new(form, &of.ends, parameters),
@@ -204,13 +221,20 @@ impl<S: Width + Controlled> Narrow<S> {
             tolerance: if equal { UNSEEN_BY_EQUAL } else { request.rtol },
             equal,
             search: None,
-        }
+            gap: None,
+            fastest: S::zero(),
+        };
+        narrow.set_parameters(parameters);
+        narrow
     }
 
     /// With other parameters from now on.
     pub(super) fn set_parameters(&mut self, parameters: &[S]) {
         self.parameters.copy_from_slice(parameters);
         self.ends.set_parameters(parameters);
+        if self.of.steady {
+            self.fastest = self.ends.fastest();
+        }
     }
 
     /// How far an argument may move between two places where a step looks.
@@ -226,14 +250,21 @@ impl<S: Width + Controlled> Narrow<S> {
     ///
     /// # Errors
     /// [`Error::Convergence`] of one trajectory with equal steps.
-    pub(super) fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<S> {
-        let mut seen = S::one();
-        let little = SHARE * self.reach(step);
-        let told = self.ends.tell(step, self.t0, little, &self.of.fades);
-        if told.less_equal(S::zero()).not().or(step.asked.not()).all() {
-            return Ok(seen);
+    pub(super) fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        if !self.of.steady {
+            return self.followed(step);
         }
-        let told = S::select(step.asked, told, S::one());
+        let gap = *self.gap.get_or_insert_with(|| longest_gap(step));
+        let moves_little = (self.fastest * step.h.abs()).less_equal(S::splat(self.reach(step) / gap));
+        let asked = step.asked.and(moves_little.not());
+        if asked.any() { self.followed(&Taken { asked, ..*step }) } else { Ok(None) }
+    }
+
+    /// The same, of arguments that may move by much.
+    fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        let little = SHARE * self.reach(step);
+        let Some(told) = self.ends.tell(step, self.t0, little, &self.of.fades) else { return Ok(None) };
+        let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
         for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
             let way = Way::of(self.form, step, lane, self.t0);
             let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
@@ -242,9 +273,22 @@ impl<S: Width + Controlled> Narrow<S> {
             let part = search.seen_until(&parameters, way, reach, self.tolerance);
             seen = seen.with_lane(lane, part);
         }
-        if self.equal && S::LANES == 1 && seen.lane(0) < 1.0 {
+        if !seen.less(S::one()).any() {
+            return Ok(None);
+        }
+        if self.equal && S::LANES == 1 {
             return Err(Error::Convergence { message: UNSEEN.to_owned(), time: self.t0 + step.from.lane(0) });
         }
-        Ok(seen)
+        Ok(Some(seen))
     }
+}
+
+/// The longest part of a step between two places where the method looks.
+fn longest_gap<S: Controlled>(step: &Taken<'_, S>) -> f64 {
+    if step.series {
+        return 1.0;
+    }
+    let mut nodes: Vec<f64> = step.nodes.iter().copied().chain([0.0, 1.0]).collect();
+    nodes.sort_by(f64::total_cmp);
+    nodes.windows(2).map(|two| two[1] - two[0]).fold(0.0, f64::max)
 }

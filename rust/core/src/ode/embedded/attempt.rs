@@ -32,7 +32,7 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
     fn run<V: View<S>>(self) -> Result<Settled<S>> {
         let Self { method, running, system, state, clock, mean, ticker } = self;
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
-        method.seen = S::one();
+        method.seen = None;
         let end_stage = method.end_stage();
         let EmbeddedStep { stages, errors: [_, terms], end_in_estimate, next, .. } = &mut *method;
         let errors = RateErrors { terms, end: *end_in_estimate, atol: &mean.atol, rtol: &mean.rtol };
@@ -49,7 +49,7 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
         }
         let EmbeddedStep { stages, next, nodes, .. } = &*method;
         let len = stages.len();
-        let seen = system.seen_until(&Taken {
+        let part = system.seen_until(&Taken {
             asked: outcome.accepted,
             from,
             h,
@@ -59,11 +59,9 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
             series: false,
             visited: None,
         })?;
-        let unseen = seen.less(S::one()).and(outcome.accepted);
-        method.seen = S::select(unseen, seen, S::one());
-        if !unseen.any() {
-            return Ok(outcome);
-        }
+        method.seen = part;
+        let Some(seen) = part else { return Ok(outcome) };
+        let unseen = seen.less(S::one());
         *clock = before;
         let outcome = S::settle(clock, running, S::select(unseen, S::splat(HUGE), size2), &method.rule);
         clock.h = S::select(unseen, h * seen, clock.h);
