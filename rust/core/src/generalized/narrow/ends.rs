@@ -3,11 +3,11 @@
 //! The one idea: a cubic stays within the hull of its four control points, which values and slopes at the ends give; where the
 //! arguments move smoothly between those by less than the reach, so they do between any two places where the method looks.
 
-use super::{BELOW, BEYOND, Fades};
+use super::features::{BELOW, BEYOND, Fades};
 use crate::expressions::machine::Width;
 use crate::expressions::{Code, Machine};
 use crate::numerics::element::{Pass, View};
-use crate::numerics::real::Mask;
+use crate::numerics::real::{Mask, Real};
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
 use std::sync::Arc;
@@ -54,9 +54,15 @@ impl<S: Width + Controlled> Ends<S> {
         rates.fold(S::zero(), |most, index| most.max(self.machine.output(index).abs()))
     }
 
-    /// Where nothing is to be followed, as arguments move by less than `little` or where functions have faded: 1, and 0 elsewhere;
-    /// nothing if that is all. What is not asked of leaves no trace: a lane knows what a trajectory alone does.
-    pub(super) fn tell(&mut self, step: &Taken<'_, S>, t0: f64, little: f64, fades: &[Fades]) -> Option<S> {
+    /// Where nothing is to be followed, as arguments move by less than `little` between two places that are no farther apart than
+    /// `gap`, or where functions have faded: 1, and 0 elsewhere; nothing if that is all. What is not asked of leaves no trace: a lane knows what a trajectory alone does.
+    pub(super) fn tell(
+        &mut self,
+        step: &Taken<'_, S>,
+        t0: f64,
+        (little, gap): (f64, f64),
+        fades: &[Fades],
+    ) -> Option<S> {
         let (of, time) = (step.ends[0], &self.time);
         let (known, all) = S::pass(Known { of, state: &self.state, times: [&step.from, time], h: &step.h });
         self.before.copy_from_slice(&self.kept);
@@ -84,8 +90,22 @@ impl<S: Width + Controlled> Ends<S> {
             self.time = S::select(step.asked, end, self.time);
         }
         let (told, all) =
-            S::pass(Little { before: &self.before, after: &self.after, fades, h: &step.h, little });
+            S::pass(Little { before: &self.before, after: &self.after, fades, h: &step.h, little, gap });
         (!all).then_some(told)
+    }
+
+    /// Between what values arguments stay in a lane of the step that was told of, and whether they move little.
+    pub(super) fn hulls(&self, step: &Taken<'_, S>, lane: usize, (little, gap): (f64, f64)) -> Vec<Hull> {
+        let (h, arguments) = (step.h.lane(lane), self.before.len() / 2);
+        let of = |values: &[S], index: usize| values[index].lane(lane);
+        let hull = |index: usize| {
+            let ends = [of(&self.before, index), of(&self.after, index)];
+            let slopes = [of(&self.before, arguments + index), of(&self.after, arguments + index)];
+            let (least, most, fastest) = hull(ends, slopes, h * (1.0 / 3.0));
+            let moves_little = most - least <= little || fastest * gap <= little;
+            Hull { ends, least, most, moves_little }
+        };
+        (0..arguments).map(hull).collect()
     }
 
     /// Runs the code at an end of a step.
@@ -107,6 +127,27 @@ impl<S: Width + Controlled> Ends<S> {
         }
         self.machine.run(S::splat(t0) + t);
     }
+}
+
+/// What an argument does in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hull {
+    /// Its values at the ends.
+    pub(super) ends: [f64; 2],
+    /// Between these it stays.
+    pub(super) least: f64,
+    pub(super) most: f64,
+    pub(super) moves_little: bool,
+}
+
+/// The least and the greatest of the control points of a cubic, and the most that it moves by in a step at any of its rates.
+#[inline(always)]
+fn hull<V: Real>([u, v]: [V; 2], [du, dv]: [V; 2], third: V) -> (V, V, V) {
+    let (first, second) = (du.multiply_add(third, u), v - dv * third);
+    let least = u.min(v).min(first.min(second));
+    let most = u.max(v).max(first.max(second));
+    let fastest = (first - u).abs().max((second - first).abs()).max((v - second).abs());
+    (least, most, fastest * V::splat(3.0))
 }
 
 /// Where a state is that at the end of the last step.
@@ -139,6 +180,7 @@ struct Little<'a, S> {
     fades: &'a [Fades],
     h: &'a S,
     little: f64,
+    gap: f64,
 }
 
 impl<S: Controlled> Pass<S> for Little<'_, S> {
@@ -147,21 +189,19 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
     fn run<V: View<S>>(self) -> (S, bool) {
         let (before, after) = (V::view(self.before), V::view(self.after));
         let third = V::load(*self.h) * V::splat(1.0 / 3.0);
-        let (arguments, little) = (self.fades.len(), V::splat(self.little));
+        let (arguments, little, gap) = (self.fades.len(), V::splat(self.little), V::splat(self.gap));
         let (below, under, beyond) = (V::splat(BELOW), V::splat(-BEYOND), V::splat(BEYOND));
         let mut all = V::zero().less_equal(V::zero());
         for (index, fades) in self.fades.iter().enumerate() {
-            let (u, v) = (before[index], after[index]);
-            let first = before[arguments + index].multiply_add(third, u);
-            let second = v - after[arguments + index] * third;
-            let least = u.min(v).min(first.min(second));
-            let most = u.max(v).max(first.max(second));
+            let slopes = [before[arguments + index], after[arguments + index]];
+            let (least, most, fastest) = hull([before[index], after[index]], slopes, third);
             let faded = match fades {
                 Fades::Below => most.less(below),
                 Fades::Beyond => most.less(under).or(beyond.less(least)),
                 Fades::Nowhere => most.less(least),
             };
-            all = all.and((most - least).less_equal(little).or(faded));
+            let slow = (most - least).less_equal(little).or((fastest * gap).less_equal(little));
+            all = all.and(slow.or(faded));
         }
         (V::select(all, V::one(), V::zero()).store(), all.all())
     }

@@ -17,12 +17,14 @@ const SPACING: f64 = 1.0 / 12.0;
 const TURNING_ROUNDS: usize = 12;
 /// Rounds of a search for a level, and how near an argument has to come to it.
 const LEVEL_ROUNDS: usize = 40;
-const NEAR: f64 = 0.05;
-/// Functions of an argument between these are looked at at every level …
+const NEAR: f64 = 0.2;
+/// Functions of an argument between these are looked at whenever it has moved by so much …
 const LEVELS: f64 = 60.0;
-const LEVEL: f64 = 1.0;
+const LEVEL: f64 = 2.0;
 /// … and so far from a turning point and from a place where the method looks.
 const BESIDE: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+/// So many levels at once, which leave lanes for the ends of a piece.
+const AT_ONCE: usize = WIDTH - 2;
 /// The least part of the way, and the most, that a step is tried again with.
 const LEAST: f64 = 1.0 / 16.0;
 const MOST: f64 = 0.9;
@@ -114,12 +116,16 @@ impl Search {
         let sampled = self.sampled(way, &places);
         let mut pieces = Vec::new();
         for (argument, values) in sampled.iter().enumerate() {
-            let mut points: Vec<Point> =
-                places.iter().zip(values).map(|(&theta, &u)| Point { theta, u }).collect();
+            let mut turnings: Vec<Point> = Vec::new();
             for j in 1..values.len() - 1 {
                 let (before, after) = (values[j] - values[j - 1], values[j + 1] - values[j]);
                 if before * after < 0.0 || (before == 0.0) != (after == 0.0) {
-                    points.push(self.turning(way, argument, (places[j - 1], places[j + 1]), before > after));
+                    turnings.push(self.turning(
+                        way,
+                        argument,
+                        (places[j - 1], places[j + 1]),
+                        before > after,
+                    ));
                 }
             }
             // What turns right behind the beginning or before the end is on one side of it at all samples.
@@ -127,23 +133,23 @@ impl Search {
             for (edge, inner) in [(0, 1), (last, last - 1)] {
                 let (near, far) = (edge.min(inner), edge.max(inner));
                 let is_top = values[edge] > values[inner];
-                points.push(self.turning(way, argument, (places[near], places[far]), is_top));
+                turnings.push(self.turning(way, argument, (places[near], places[far]), is_top));
             }
-            points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
+            let sample = |theta: f64| places.iter().zip(values).find(|(place, _)| **place == theta);
             for looks in way.nodes.windows(2) {
-                let between: Vec<Point> =
-                    points.iter().filter(|p| p.theta >= looks[0] && p.theta <= looks[1]).copied().collect();
-                let least = between.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
-                let most = between.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
+                let ends = looks.iter().filter_map(|&theta| sample(theta));
+                let inside = turnings.iter().filter(|p| p.theta > looks[0] && p.theta < looks[1]).copied();
+                let mut points: Vec<Point> =
+                    ends.map(|(&theta, &u)| Point { theta, u }).chain(inside).collect();
+                points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
+                let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
+                let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }
-                pieces.extend(between.windows(2).map(|two| Piece {
-                    argument,
-                    from: two[0],
-                    to: two[1],
-                    looks: [looks[0], looks[1]],
-                }));
+                let looks = [looks[0], looks[1]];
+                let moving = points.windows(2).filter(|two| (two[1].u - two[0].u).abs() > BESIDE[0]);
+                pieces.extend(moving.map(|two| Piece { argument, from: two[0], to: two[1], looks }));
             }
         }
         pieces
@@ -170,54 +176,63 @@ impl Search {
 
     /// The first place of a piece at which what no look sees matters.
     fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], tolerance: f64) -> Option<f64> {
-        let (from, to) = (piece.from, piece.to);
-        let levels = levels(from.u, to.u);
-        let mut points = vec![from];
-        for eight in levels.chunks(WIDTH) {
-            points.extend(self.at_levels(way, piece, eight).into_iter().take(eight.len()));
-        }
-        points.push(to);
+        let levels = levels(piece.from.u, piece.to.u);
         let looks = self.functions_at(way, &lanes(&piece.looks));
-        let mut first: Option<f64> = None;
-        let lasting = |k: usize| {
-            let apart = |a: &Point, b: &Point| {
-                let (time, moved) = ((b.theta - a.theta).abs(), (b.u - a.u).abs());
-                if moved > 1.0 { time / moved } else { time }
-            };
-            let before = if k > 0 { apart(&points[k - 1], &points[k]) } else { 0.0 };
-            let after = points.get(k + 1).map_or(0.0, |next| apart(&points[k], next));
-            before.max(after)
-        };
-        for start in (0..points.len()).step_by(WIDTH) {
-            let eight: Vec<f64> = points[start..].iter().take(WIDTH).map(|point| point.theta).collect();
-            let functions = self.functions_at(way, &lanes(&eight));
-            let actual = self.rates_with(way, &lanes(&eight), &functions);
-            let frozen: [Vec<Lanes>; 2] = [0, 1].map(|side| {
-                let mut there = functions.clone();
-                for ((function, look), owner) in there.iter_mut().zip(&looks).zip(&self.of.owners) {
-                    if *owner == piece.argument {
-                        *function = Lanes([look.0[side]; WIDTH]);
-                    }
-                }
-                self.rates_with(way, &lanes(&eight), &there)
-            });
-            for (lane, &theta) in eight.iter().enumerate() {
-                let time = way.h.abs() * lasting(start + lane);
-                let matters = actual.iter().enumerate().any(|(i, rate)| {
-                    let apart = |side: usize| (rate.0[lane] - frozen[side][i].0[lane]).abs();
-                    let impulse = smaller(apart(0), apart(1)) * time;
-                    // What is no number matters.
-                    impulse.is_nan() || impulse > tolerance * sizes[i]
-                });
-                if matters && first.is_none_or(|first| theta < first) {
-                    first = Some(theta);
-                }
+        let mut last = piece.from;
+        for (index, some) in levels.chunks(AT_ONCE).enumerate() {
+            // One that is known comes before them, so that how long each lasts is known.
+            let mut points = vec![last];
+            points.extend(self.at_levels(way, piece, some).into_iter().take(some.len()));
+            if (index + 1) * AT_ONCE >= levels.len() {
+                points.push(piece.to);
             }
-            if first.is_some() {
-                break;
+            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, tolerance)) {
+                return Some(theta);
             }
+            last = points[points.len() - 1];
         }
-        first
+        None
+    }
+
+    /// The first of some places at which rates with the functions there are not those with the functions at either look.
+    fn first_that_matters(
+        &mut self,
+        way: &Way,
+        piece: &Piece,
+        (looks, points): (&[Lanes], &[Point]),
+        (sizes, tolerance): (&[f64], f64),
+    ) -> Option<f64> {
+        let thetas: Vec<f64> = points.iter().map(|point| point.theta).collect();
+        let thetas = lanes(&thetas);
+        let functions = self.functions_at(way, &thetas);
+        let actual = self.rates_with(way, &thetas, &functions);
+        let frozen: [Vec<Lanes>; 2] = [0, 1].map(|side| {
+            let mut there = functions.clone();
+            for ((function, look), owner) in there.iter_mut().zip(looks).zip(&self.of.owners) {
+                if *owner == piece.argument {
+                    *function = Lanes([look.0[side]; WIDTH]);
+                }
+            }
+            self.rates_with(way, &thetas, &there)
+        });
+        // The time in which the argument moves by 1 there.
+        let apart = |pair: &[Point]| {
+            let (time, moved) = ((pair[1].theta - pair[0].theta).abs(), (pair[1].u - pair[0].u).abs());
+            if moved > 1.0 { time / moved } else { time }
+        };
+        let gaps: Vec<f64> = points.windows(2).map(apart).collect();
+        let matters = |k: &usize| {
+            let after = gaps.get(*k).copied().unwrap_or(0.0);
+            let before = if *k > 0 { gaps[*k - 1] } else { 0.0 };
+            let time = way.h.abs() * before.max(after);
+            actual.iter().enumerate().any(|(i, rate)| {
+                let apart = |side: usize| (rate.0[*k] - frozen[side][i].0[*k]).abs();
+                let impulse = smaller(apart(0), apart(1)) * time;
+                // What is no number matters.
+                impulse.is_nan() || impulse > tolerance * sizes[i]
+            })
+        };
+        (0..points.len()).find(matters).map(|k| points[k].theta)
     }
 
     /// Places of a piece where its argument has these levels.

@@ -7,6 +7,8 @@ use crate::ode::system::{Form, Taken, Visited};
 
 /// So many parts of a step have a state of the polynomial through its ends.
 const PARTS: usize = 8;
+/// The most places of which states are known: of a series.
+const MOST_PLACES: usize = 16;
 /// Of a series, which looks at its ends alone, or of equal steps.
 const NO_NODES: &[f64] = &[];
 
@@ -48,8 +50,7 @@ impl Way {
 
     /// Enters the states at eight places, and runs the code.
     pub(super) fn run(&self, thetas: &[f64; WIDTH], machine: &mut Machine<Lanes>) {
-        let last = self.places.len();
-        let mut basis = vec![[0.0; WIDTH]; last];
+        let mut basis = [[0.0; WIDTH]; MOST_PLACES];
         for (lane, &theta) in thetas.iter().enumerate() {
             let mut before = 1.0;
             for (j, place) in self.places.iter().enumerate() {
