@@ -26,8 +26,8 @@ FUNCTIONS = (
     "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
     "asin", "acos", "atan", "asinh", "acosh", "atanh",
 )  # fmt: skip
-#: What a smooth step in the place of a leap needs: one that is narrower than a step is passed over.
-WIDTH = "with a max_step of run that is small enough for steps to see the width"
+#: Of a smooth step in the place of a leap: one that is narrower than a step is found by methods that choose theirs.
+WIDTH = "which steps follow, however small the width"
 #: Where two laws meet.
 SWITCH = "end the run by an event where it switches, and go on from out.final with the other law"
 _LARGER = "write (x + y + abs(x - y)) / 2"

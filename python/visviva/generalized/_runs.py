@@ -180,7 +180,8 @@ class Runs(States):
             For what cannot be run, before anything runs.
         ConvergenceError
             At a singularity; where constraints come to depend on each other (the change point of a mechanism); where
-            dry friction, as of ``abs(v[0])``, holds a velocity at zero. ``.trajectory`` holds what was computed.
+            dry friction, as of ``abs(v[0])``, holds a velocity at zero; where a step of `dt` goes over a wall, a bump
+            or a pulse of exp or tanh that is narrower than it. ``.trajectory`` holds what was computed.
         Interrupted
             By Ctrl-C; ``.trajectory`` holds what was computed.
 

@@ -10,7 +10,7 @@ use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
 use crate::ode::stepper::{Stepper, stepper};
-use crate::ode::system::System;
+use crate::ode::system::{System, Taken};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
@@ -20,6 +20,8 @@ pub(super) struct FixedSteps<S: Controlled> {
     h: f64,
     node: u64,
     next: State<S>,
+    /// The parts of the steps tried last up to which nothing lies between their nodes, if something does.
+    pub(super) seen: Option<S>,
 }
 
 impl<S: Controlled> FixedSteps<S> {
@@ -31,7 +33,7 @@ impl<S: Controlled> FixedSteps<S> {
     ) -> Result<Self> {
         let mut stepper = stepper(method, h, system, state)?;
         stepper.look_back();
-        Ok(Self { stepper, h, node: 0, next: state.clone() })
+        Ok(Self { stepper, h, node: 0, next: state.clone(), seen: None })
     }
 }
 
@@ -72,6 +74,16 @@ impl<S: Controlled> Trial<S> for FixedSteps<S> {
         } else {
             self.stepper.between(self.node, h, &mut self.next, system, ticker)?;
         }
+        self.seen = system.seen_until(&Taken {
+            asked: running,
+            from: clock.elapsed,
+            h: S::next_step(clock, running),
+            ends: [state.all().0, self.next.all().0],
+            rates: None,
+            nodes: &[],
+            series: false,
+            visited: None,
+        })?;
         // Without an error the next step is the longest, which is this one.
         let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));
         clock.h = S::splat(self.h);

@@ -1,5 +1,6 @@
 //! A mechanical system in generalized coordinates: where it comes from and what was made of it.
 
+use super::narrow::Features;
 use super::poles::Divisors;
 use super::projection::Projection;
 use super::{hamiltonian, lagrangian, sticking};
@@ -78,6 +79,8 @@ pub struct Model {
     pub switches: Vec<Arc<Code>>,
     /// What it divides by, if that may change its sign.
     pub divisors: Option<Divisors>,
+    /// What may be too narrow for a step, if it has functions like that.
+    pub narrow: Option<Arc<Features>>,
     needs: Needs,
 }
 
@@ -116,12 +119,14 @@ impl Model {
             projection: None,
             switches: vec![],
             divisors: None,
+            narrow: None,
             needs: Needs::default(),
         };
         model.needs = model.what_is_looked_at();
         model.projection = Projection::new(&mut model)?;
         model.switches = sticking::switches(&mut model)?;
         model.divisors = Divisors::of(&model)?;
+        model.narrow = Features::of(&mut model)?.map(Arc::new);
         Ok(model)
     }
 
@@ -184,13 +189,7 @@ impl Model {
     /// # Errors
     /// Functions in it that [leap](Series::leaps).
     pub fn series(&self) -> Result<Arc<Series>> {
-        let of_systems =
-            self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
-        let of_rates = self.rates.iter().filter_map(|rate| match rate {
-            Output::Node(id) => Some(id),
-            Output::Unknown(_) => None,
-        });
-        let roots: Vec<Id> = of_systems.chain(of_rates).copied().collect();
+        let roots = self.roots();
         if let Some(function) = Series::leaps(&self.source.graph, &roots) {
             return Err(Error::invalid(
                 "method",
@@ -204,6 +203,17 @@ impl Model {
         Series::new(&self.source.graph, inputs, &self.systems, &self.rates).map(Arc::new)
     }
 
+    /// What its rates and their linear equations are made of.
+    pub(super) fn roots(&self) -> Vec<Id> {
+        let of_systems =
+            self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
+        let of_rates = self.rates.iter().filter_map(|rate| match rate {
+            Output::Node(id) => Some(id),
+            Output::Unknown(_) => None,
+        });
+        of_systems.chain(of_rates).copied().collect()
+    }
+
     /// What its equations look at.
     pub fn needs(&self) -> Needs {
         self.needs
@@ -213,14 +223,7 @@ impl Model {
         use crate::expressions::Node;
         let graph = &self.source.graph;
         let n = self.source.coordinates as u32;
-        let mut roots: Vec<Id> = Vec::new();
-        for system in &self.systems {
-            roots.extend(system.matrix.iter().flatten().chain(&system.right));
-        }
-        roots.extend(self.rates.iter().filter_map(|rate| match rate {
-            Output::Node(id) => Some(*id),
-            Output::Unknown(_) => None,
-        }));
+        let roots = self.roots();
         Needs {
             time: graph.any(&roots, |node| matches!(node, Node::Time)),
             velocity: graph.any(&roots, |node| matches!(node, Node::Variable(index) if *index >= n)),

@@ -2,14 +2,15 @@
 
 use super::ahead_of_forces::{LONGEST_FREE, LongestStep};
 use super::model::Model;
+use super::narrow::Narrow;
 use super::run::{Integrator, Request};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::expressions::machine::Width;
 use crate::expressions::series::{Coefficient, Coefficients, Equations, Expansion};
-use crate::numerics::element::Element;
 use crate::ode::series::Jet;
-use crate::ode::system::{Form, Needs, System};
+use crate::ode::step_control::Controlled;
+use crate::ode::system::{Form, Needs, System, Taken};
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
 
@@ -28,9 +29,11 @@ pub struct Motion<S> {
     series: Option<Expansion<S>>,
     /// The longest step on which nothing is felt.
     longest_free: S,
+    /// What may lie between the nodes of a step.
+    narrow: Option<Box<Narrow<S>>>,
 }
 
-impl<S: Width + Coefficient> Motion<S> {
+impl<S: Width + Coefficient + Controlled> Motion<S> {
     /// With these parameters, of a run that starts then.
     pub fn new(model: &Model, parameters: &[S], t0: S) -> Self {
         Self {
@@ -42,6 +45,7 @@ impl<S: Width + Coefficient> Motion<S> {
             flat: false,
             series: None,
             longest_free: S::splat(f64::INFINITY),
+            narrow: None,
         }
     }
 
@@ -54,6 +58,10 @@ impl<S: Width + Coefficient> Motion<S> {
             longest_free: S::splat(LONGEST_FREE * (end - start).abs()),
             flat: matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })),
             series: series.map(|series| Expansion::new(series.clone(), parameters)),
+            narrow: model
+                .narrow
+                .as_ref()
+                .map(|of| Box::new(Narrow::new(of, model.form, request, parameters))),
             ..motion
         }
     }
@@ -63,6 +71,9 @@ impl<S: Width + Coefficient> Motion<S> {
         self.machine.set_parameters(parameters);
         if let Some(series) = &mut self.series {
             series.set_parameters(parameters);
+        }
+        if let Some(narrow) = &mut self.narrow {
+            narrow.set_parameters(parameters);
         }
     }
 
@@ -76,7 +87,7 @@ impl<S: Width + Coefficient> Motion<S> {
     }
 }
 
-impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
+impl<S: Width + Coefficient + Controlled> System<S> for Motion<S> {
     fn form(&self) -> Form {
         if self.flat { Form::FirstOrder(self.form.len()) } else { self.form }
     }
@@ -125,6 +136,10 @@ impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
         let equations = Equations { second_order, velocity, t, unit, inverse };
         series.motion(&equations, Coefficients { order, len, q, v });
         Ok(())
+    }
+
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        self.narrow.as_mut().map_or(Ok(None), |narrow| narrow.seen_until(step))
     }
 
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {

@@ -128,3 +128,14 @@ fn a_double_pendulum_takes_few_operations() {
     assert!(chain(1).code.operations() <= 3);
     assert!(henon_heiles().code.operations() <= 5);
 }
+
+#[test]
+fn only_models_with_functions_like_exp_look_for_what_is_narrow() {
+    assert!(chain(2).narrow.is_none());
+    assert!(henon_heiles().narrow.is_none());
+    let mut graph = Graph::default();
+    let [q, p] = [0, 1].map(|i| graph.variable(i));
+    let (p2, wall) = (graph.multiply(p, p), graph.call(Function::Tanh, q));
+    let function = graph.sum(0.0, &[(0.5, p2), (1.0, wall)]);
+    assert!(model(graph, Kind::Hamiltonian, 1, 0, function).narrow.is_some());
+}

@@ -44,6 +44,10 @@ pub struct EmbeddedStep<S: Element> {
     weights: Row<S>,
     rule: Rule<S>,
     next: State<S>,
+    /// Where its stages look.
+    nodes: Vec<f64>,
+    /// The part of the step tried last up to which nothing lies between those, if something does.
+    seen: Option<S>,
 }
 
 impl<S: Controlled> EmbeddedStep<S> {
@@ -77,7 +81,14 @@ impl<S: Controlled> EmbeddedStep<S> {
             weights: Row { fraction: S::zero(), position: Vec::new(), velocity: Vec::new() },
             rule,
             next: state.clone(),
+            nodes: tableau.c.iter().map(|c| c.to_f64()).collect(),
+            seen: None,
         }
+    }
+
+    /// Evaluations in a lane of the step tried last that its refusal hides.
+    pub(crate) fn hidden(&self, lane: usize) -> u64 {
+        u64::from(!self.end_in_estimate && self.seen.as_ref().is_some_and(|seen| seen.lane(lane) < 1.0))
     }
 
     /// The stage that holds the derivative at the end of the step.

@@ -6,7 +6,7 @@
 
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::element::Element;
-use crate::numerics::lanes::{Bits, Lanes, Vector8};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::{Mask, Real};
 use crate::tiered;
@@ -198,6 +198,13 @@ pub trait Controlled: Element {
     fn sum_of_lanes(self) -> Self;
     /// The first lane, as a double.
     fn first_lane(self) -> f64;
+    /// A lane, as a double.
+    fn lane(&self, lane: usize) -> f64;
+    /// The same with another number in a lane.
+    #[must_use]
+    fn with_lane(self, lane: usize, number: f64) -> Self;
+    /// How many there are.
+    const LANES: usize;
     /// The power of two that is at most the size of a number, or the least or greatest of a wide range.
     #[must_use]
     fn power_below(self) -> Self;
@@ -223,6 +230,13 @@ macro_rules! controlled {
             fn first_lane(self) -> f64 {
                 DoubleDouble::from(self).to_f64()
             }
+            fn lane(&self, _: usize) -> f64 {
+                self.first_lane()
+            }
+            fn with_lane(self, _: usize, number: f64) -> Self {
+                Self::splat(number)
+            }
+            const LANES: usize = 1;
             fn power_below(self) -> Self {
                 Self::splat(power_below(self.first_lane()))
             }
@@ -289,6 +303,14 @@ impl Controlled for Lanes {
     fn first_lane(self) -> f64 {
         self.0[0]
     }
+    fn lane(&self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    fn with_lane(mut self, lane: usize, number: f64) -> Self {
+        self.0[lane] = number;
+        self
+    }
+    const LANES: usize = WIDTH;
     fn power_below(self) -> Self {
         self.map(power_below)
     }

@@ -74,6 +74,29 @@ impl Needs {
     }
 }
 
+/// States on the way of a step: places as parts of it, ascending, the first 0 and the last 1, with the states there.
+pub type Visited = Vec<(f64, Vec<f64>)>;
+
+/// A step that was taken, for who asks what it has not seen.
+pub struct Taken<'a, S: Element> {
+    /// The lanes that are asked of.
+    pub asked: S::Mask,
+    /// The time before it.
+    pub from: S,
+    /// Its length.
+    pub h: S,
+    /// The states at its ends.
+    pub ends: [&'a [S]; 2],
+    /// The derivatives there or near there, as [`System::rate`] or [`System::acceleration`] gives them, if they are known.
+    pub rates: Option<[&'a [S]; 2]>,
+    /// Where the method looks within it, as parts of it, in any order.
+    pub nodes: &'a [f64],
+    /// Whether what it knows of its beginning tells of all the step, as a series does.
+    pub series: bool,
+    /// The states that it went through in a lane, if more than its ends are known.
+    pub visited: Option<&'a dyn Fn(usize) -> Visited>,
+}
+
 /// A system of ordinary differential equations, of one trajectory or of eight in lanes. Times are counted from the start
 /// of the run, so that a start far from zero costs no digits; a system that does not need them may be given any.
 pub trait System<S: Element>: Send {
@@ -133,6 +156,16 @@ pub trait System<S: Element>: Send {
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
         let _ = (jet, h);
         None
+    }
+
+    /// The part of a step up to which nothing that matters lies between the places where the method looks, 1 in lanes where that
+    /// holds for all of it; nothing if it does in all.
+    ///
+    /// # Errors
+    /// [`Error::Convergence`] where no shorter step can be taken.
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        let _ = step;
+        Ok(None)
     }
 
     /// How long a step of a system of the second order may be from a state with these accelerations, if something on the

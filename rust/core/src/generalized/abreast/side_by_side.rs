@@ -3,6 +3,7 @@
 use crate::Result;
 use crate::generalized::fixed::FixedSteps;
 use crate::generalized::motion::Motion;
+use crate::generalized::narrow::UNSEEN;
 use crate::generalized::run::Request;
 use crate::numerics::lanes::Lanes;
 use crate::ode::embedded::EmbeddedStep;
@@ -28,9 +29,17 @@ pub trait SideBySide: Trial<Lanes> {
     }
 }
 
-impl SideBySide for EmbeddedStep<Lanes> {}
+impl SideBySide for EmbeddedStep<Lanes> {
+    fn taken(&mut self, lane: usize) -> u64 {
+        self.hidden(lane)
+    }
+}
 impl SideBySide for TaylorStep<Lanes> {}
-impl SideBySide for FixedSteps<Lanes> {}
+impl SideBySide for FixedSteps<Lanes> {
+    fn lost(&mut self, lane: usize) -> Option<String> {
+        self.seen.is_some_and(|seen| seen.0[lane] < 1.0).then(|| UNSEEN.to_owned())
+    }
+}
 
 /// The method for eight trajectories.
 pub(super) fn trial(

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
-use crate::ode::system::System;
+use crate::ode::system::{System, Taken};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 use std::sync::Arc;
@@ -90,8 +90,8 @@ impl Trial<f64> for DiscreteStep {
     fn attempt(
         &mut self,
         running: bool,
-        _: &mut dyn System<f64>,
-        _: &State<f64>,
+        system: &mut dyn System<f64>,
+        state: &State<f64>,
         clock: &mut Clock<f64>,
         _: &Norm<f64>,
         _: &mut Ticker<'_>,
@@ -99,6 +99,16 @@ impl Trial<f64> for DiscreteStep {
         let h = f64::next_step(clock, running);
         self.step(self.t0 + clock.elapsed, h, false)?;
         write(&self.after, &mut self.next);
+        let _all = system.seen_until(&Taken {
+            asked: true,
+            from: clock.elapsed,
+            h,
+            ends: [state.all().0, self.next.all().0],
+            rates: None,
+            nodes: &[],
+            series: false,
+            visited: None,
+        })?;
         // Without an error the next step is the longest, which is this one.
         let outcome = f64::settle(clock, running, 0.0, &Rule::new(1, self.h.abs()));
         clock.h = self.h;

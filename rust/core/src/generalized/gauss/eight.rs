@@ -16,12 +16,13 @@ use crate::error::Result;
 use crate::expressions::Code;
 use crate::expressions::machine::Blocks;
 use crate::generalized::abreast::SideBySide;
+use crate::generalized::narrow::UNSEEN;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
-use crate::ode::system::{Form, System};
+use crate::ode::system::{Form, System, Taken, Visited};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 use std::sync::Arc;
@@ -44,6 +45,8 @@ pub struct GaussEight {
     begin: Vec<Lanes>,
     /// Those of shadow steps.
     shadow: Columns,
+    /// Rates at the first and at the last stages.
+    edges: [Vec<Lanes>; 2],
     next: State<Lanes>,
     steps: Steps,
     longest: f64,
@@ -79,6 +82,7 @@ impl GaussEight {
             ends: vec![Lanes::zero(); evaluated],
             begin: vec![Lanes::zero(); evaluated],
             shadow: Columns::new(evaluated),
+            edges: [vec![Lanes::zero(); evaluated], vec![Lanes::zero(); evaluated]],
             next: state.clone(),
             steps,
             longest,
@@ -164,6 +168,35 @@ impl GaussEight {
             }
         }
         most
+    }
+
+    /// The parts of steps between whose stages nothing lies that none of them feels, in the lanes of the mask.
+    fn seen_until(
+        &mut self,
+        system: &mut dyn System<Lanes>,
+        state: &State<Lanes>,
+        (from, h): (Lanes, Lanes),
+        asked: Bits,
+    ) -> Result<Lanes> {
+        if !asked.any() {
+            return Ok(Lanes::one());
+        }
+        let last = self.table.stages - 1;
+        for (index, row) in self.columns.rates.iter().enumerate() {
+            [self.edges[0][index], self.edges[1][index]] = [row[0], row[last]];
+        }
+        let Self { table, form, columns, next, edges, .. } = self;
+        let rates = Some([&edges[0][..], &edges[1][..]]);
+        let ends = [state.all().0, next.all().0];
+        let visited = |lane: usize| {
+            let of = |end: &[Lanes]| end.iter().map(|y| y.0[lane]).collect::<Vec<f64>>();
+            table.visited(*form, ends.map(of), h.0[lane], |i, k| columns.rates[i][k].0[lane])
+        };
+        let nodes = &table.c.0[..table.stages];
+        let visited = Some(&visited as &dyn Fn(usize) -> Visited);
+        let seen =
+            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+        Ok(seen.unwrap_or(Lanes::one()))
     }
 
     /// Looks for what motions from rest are measured by, in the lanes of the mask, over the spans of their runs.
@@ -252,7 +285,7 @@ impl Trial<Lanes> for GaussEight {
     fn attempt(
         &mut self,
         running: Bits,
-        _: &mut dyn System<Lanes>,
+        system: &mut dyn System<Lanes>,
         state: &State<Lanes>,
         clock: &mut Clock<Lanes>,
         _: &Norm<Lanes>,
@@ -289,6 +322,14 @@ impl Trial<Lanes> for GaussEight {
                 }
             }
         }
+        let asked = errors.less_equal(Lanes::zero()).and(running);
+        let seen = self.seen_until(system, state, (clock.elapsed, h), asked)?;
+        for lane in (0..WIDTH).filter(|&lane| asked.lane(lane) && seen.0[lane] < 1.0) {
+            errors.0[lane] = 4.0;
+            if matches!(self.steps, Steps::Equal(_)) {
+                self.lost[lane] = Some(UNSEEN.to_owned());
+            }
+        }
         let kept = errors.less_equal(Lanes::zero());
         let remembered = kept.or(self.lanes(|_, pace| pace.kept == 0));
         self.columns.remember(running.and(iterated.converged).and(remembered), kept);
@@ -296,7 +337,9 @@ impl Trial<Lanes> for GaussEight {
         self.length_tried = h;
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let (pace, h) = (&mut self.paces[lane], h.0[lane]);
-            clock.h.0[lane] = if errors.0[lane] > 0.0 {
+            clock.h.0[lane] = if seen.0[lane] < 1.0 {
+                pace.after_unseen(h, seen.0[lane])
+            } else if errors.0[lane] > 0.0 {
                 pace.instead_of(h, self.steps, self.table)
             } else if outcome.finished.lane(lane) {
                 planned.0[lane]

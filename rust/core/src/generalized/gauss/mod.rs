@@ -16,6 +16,7 @@ mod step;
 mod tables;
 mod told;
 mod trial;
+mod visited;
 
 use crate::numerics::lanes::{Lanes, WIDTH};
 pub use eight::GaussEight;

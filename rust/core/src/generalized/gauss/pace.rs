@@ -136,6 +136,12 @@ impl Pace {
         if next.abs() > longest { longest.copysign(next) } else { next }
     }
 
+    /// The step to be tried in the place of one of length `h` that has seen no more than this part of its way.
+    pub(super) fn after_unseen(&mut self, h: f64, seen: f64) -> f64 {
+        self.holding = false;
+        h * seen
+    }
+
     /// The step to be tried in the place of one of length `h` that is not kept.
     pub(super) fn instead_of(&mut self, h: f64, steps: Steps, table: &Table) -> f64 {
         self.holding = false;

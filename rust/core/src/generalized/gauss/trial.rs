@@ -17,7 +17,7 @@ use crate::numerics::real::Real;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
-use crate::ode::system::{Form, System};
+use crate::ode::system::{Form, System, Taken, Visited};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
@@ -52,6 +52,8 @@ pub struct GaussStep {
     begin: Vec<f64>,
     /// Those of a shadow step.
     shadow: Stages,
+    /// Rates at the first and at the last stage.
+    edges: [Vec<f64>; 2],
     next: State<f64>,
     steps: Steps,
     /// Where the system's time stands at the start.
@@ -84,6 +86,7 @@ impl GaussStep {
             length_tried: 0.0,
             begin: vec![],
             shadow: Stages::new(evaluated),
+            edges: [vec![0.0; evaluated], vec![0.0; evaluated]],
             next: state.clone(),
             steps,
             t0,
@@ -177,6 +180,29 @@ impl GaussStep {
         }
     }
 
+    /// The part of the step between whose stages nothing lies that none of them feels.
+    fn seen_until(
+        &mut self,
+        system: &mut dyn System<f64>,
+        state: &State<f64>,
+        (from, h): (f64, f64),
+    ) -> Result<f64> {
+        let last = self.table.stages - 1;
+        for (index, rates) in self.stages.rates.iter().enumerate() {
+            [self.edges[0][index], self.edges[1][index]] = [rates.0[0], rates.0[last]];
+        }
+        let Self { table, form, stages, next, edges, .. } = self;
+        let rates = Some([&edges[0][..], &edges[1][..]]);
+        let ends = [state.all().0, next.all().0];
+        let visited =
+            |_: usize| table.visited(*form, ends.map(|end| end.to_vec()), h, |i, k| stages.rates[i].0[k]);
+        let nodes = &table.c.0[..table.stages];
+        let (asked, visited) = (true, Some(&visited as &dyn Fn(usize) -> Visited));
+        let seen =
+            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+        Ok(seen.unwrap_or(1.0))
+    }
+
     /// By how much the rates at the end of the step, and at the beginning of the first, are not those that the stages lead to,
     /// as a part of a size.
     fn missed(&mut self, t: f64, h: f64) -> f64 {
@@ -243,7 +269,7 @@ impl Trial<f64> for GaussStep {
     fn attempt(
         &mut self,
         running: bool,
-        _: &mut dyn System<f64>,
+        system: &mut dyn System<f64>,
         state: &State<f64>,
         clock: &mut Clock<f64>,
         _: &Norm<f64>,
@@ -261,13 +287,17 @@ impl Trial<f64> for GaussStep {
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }
-        let (refused, rule) = (self.pace.refuses(self.steps, &self.ending), Rule::new(1, f64::INFINITY));
+        let astray = self.pace.refuses(self.steps, &self.ending);
+        let seen = if astray { 1.0 } else { self.seen_until(system, state, (clock.elapsed, h))? };
+        let (refused, rule) = (astray || seen < 1.0, Rule::new(1, f64::INFINITY));
         if iterated.converged && (!refused || self.pace.kept == 0) {
             self.stages.remember(!refused);
         }
         let outcome = f64::settle(clock, running, if refused { 4.0 } else { 0.0 }, &rule);
         self.length_tried = h;
-        clock.h = if refused {
+        clock.h = if seen < 1.0 {
+            self.pace.after_unseen(h, seen)
+        } else if refused {
             self.pace.instead_of(h, self.steps, self.table)
         } else if outcome.finished {
             // The last step may be short: what it tells of the next one is for nobody.

@@ -8,10 +8,11 @@ use crate::error::Result;
 use crate::numerics::element::{Pass, View};
 use crate::numerics::real::Mask;
 use crate::ode::norm::RootMeanSquare;
+use crate::ode::passes::errors::HUGE;
 use crate::ode::passes::rates::RateErrors;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Settled};
-use crate::ode::system::System;
+use crate::ode::system::{System, Taken};
 use crate::parallel::Ticker;
 
 /// [`Trial::attempt`](crate::ode::trial::Trial::attempt), its arguments, and the method at work.
@@ -31,16 +32,39 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
     fn run<V: View<S>>(self) -> Result<Settled<S>> {
         let Self { method, running, system, state, clock, mean, ticker } = self;
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
+        method.seen = None;
         let end_stage = method.end_stage();
         let EmbeddedStep { stages, errors: [_, terms], end_in_estimate, next, .. } = &mut *method;
         let errors = RateErrors { terms, end: *end_in_estimate, atol: &mean.atol, rtol: &mean.rtol };
         let step = stages.rate_pass((&from, &h), (state, next), Some(errors), &mut *system, &mut *ticker);
         let sizes = step.run::<V>()?;
         let size2 = method.combined(sizes);
+        let before = *clock;
         let outcome = S::settle(clock, running, size2, &method.rule);
         if outcome.accepted.any() && !method.end_in_estimate {
             method.stages.evaluate(end_stage, &clock.elapsed, &method.next, system, ticker)?;
         }
+        if !outcome.accepted.any() {
+            return Ok(outcome);
+        }
+        let EmbeddedStep { stages, next, nodes, .. } = &*method;
+        let len = stages.len();
+        let part = system.seen_until(&Taken {
+            asked: outcome.accepted,
+            from,
+            h,
+            ends: [state.all().0, next.all().0],
+            rates: Some([&stages.k[..len], &stages.k[end_stage * len..][..len]]),
+            nodes,
+            series: false,
+            visited: None,
+        })?;
+        method.seen = part;
+        let Some(seen) = part else { return Ok(outcome) };
+        let unseen = seen.less(S::one());
+        *clock = before;
+        let outcome = S::settle(clock, running, S::select(unseen, S::splat(HUGE), size2), &method.rule);
+        clock.h = S::select(unseen, h * seen, clock.h);
         Ok(outcome)
     }
 }
