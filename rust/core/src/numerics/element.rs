@@ -76,6 +76,10 @@ pub trait View<S>: InverseCube {
     fn mask(mask: S::Mask) -> Self::Mask
     where
         S: Real;
+    /// And back.
+    fn mask_in_memory(mask: Self::Mask) -> S::Mask
+    where
+        S: Real;
 }
 
 /// A loop over arrays of `S`, with its arguments: lanes by reference, since a copy is made with narrower instructions than it
@@ -117,6 +121,10 @@ macro_rules! own_view {
             fn mask(mask: bool) -> bool {
                 mask
             }
+            #[inline(always)]
+            fn mask_in_memory(mask: bool) -> bool {
+                mask
+            }
         }
     )+};
 }
@@ -141,6 +149,10 @@ impl<V: Vector8 + InverseCube> View<Lanes> for V {
     }
     #[inline(always)]
     fn mask(mask: super::lanes::Bits) -> Self::Mask {
+        mask
+    }
+    #[inline(always)]
+    fn mask_in_memory(mask: Self::Mask) -> super::lanes::Bits {
         mask
     }
 }

@@ -7,7 +7,8 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, LargestRoot, Missed, OwnInverse, OwnMissed, Sum, nest};
+use super::passes::series::{LargestRoot, OwnInverse, Sum, Sums, nest};
+use super::passes::step_by_series::{Choice, Chosen, FAR, Missed, OwnMissed};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -21,9 +22,6 @@ use crate::parallel::Ticker;
 
 /// Of a step that does not end well, so much is tried next.
 const SHRINK: f64 = 1.0 / 256.0;
-/// Of a step of so many units of time the last coefficients may be too small for all their digits, and for a step that other
-/// units of the scene leave as it is: the motion is expanded once more, in a unit longer by this.
-const FAR: f64 = 4_294_967_296.0; // 2^32
 /// Of the whole time, the shortest unit with which a run begins: a body that hardly moves would ask for less.
 const BRIEFEST: f64 = 1.0 / (FAR * FAR * FAR * FAR);
 /// A tolerance ε asks for the order `-ln(ε)/2 + 1` (Jorba & Zou); so much for the 1, as what a step costs besides its
@@ -56,8 +54,10 @@ pub struct TaylorStep<S: Element> {
     too_long: S,
     /// The longest step after one that led astray.
     bound: S,
-    /// The step tried last.
+    /// The step tried last, as long as it was chosen, and the time at its end.
     h: S,
+    chosen: S,
+    reached: S,
     rule: Rule<S>,
     /// What the step is multiplied with, for the margin.
     margin: f64,
@@ -76,7 +76,21 @@ impl<S: Controlled> TaylorStep<S> {
         let jet = Jet::new(len, orders.highest);
         let none = S::splat(f64::INFINITY);
         let (unit, h, next, rates) = (S::one(), S::zero(), state.clone(), vec![S::zero(); len]);
-        Self { orders, jet, unit, too_long: none, bound: none, h, rule, margin: 1.0, next, rates }
+        let (chosen, reached) = (h, h);
+        Self {
+            orders,
+            jet,
+            unit,
+            too_long: none,
+            bound: none,
+            h,
+            chosen,
+            reached,
+            rule,
+            margin: 1.0,
+            next,
+            rates,
+        }
     }
 
     /// The order for a tolerance.
@@ -89,15 +103,10 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
-    /// One over the step that the coefficients of two orders allow.
+    /// One over the step that the coefficients of two orders allow, where vectors are measured.
     fn inverse_step_of(&self, pair: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
-        if !norm.blocks.is_empty() {
-            let squares = self.sizes(pair, state, elapsed, norm);
-            return S::pass(LargestRoot { squares, orders: pair });
-        }
-        let Jet { q, len, .. } = &self.jet;
-        let (tolerance, times) = (&norm.rtol, REFINEMENTS + 1);
-        S::pass(OwnInverse { blocks: q, len: *len, orders: pair, tolerance, times })
+        let squares = self.sizes(pair, state, elapsed, norm);
+        S::pass(LargestRoot { squares, orders: pair })
     }
 
     /// The squared scaled sizes of the coefficients of two orders.
@@ -115,10 +124,15 @@ impl<S: Controlled> TaylorStep<S> {
     /// One over the longest step that the coefficients allow, in their unit of time.
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut highest = self.jet.order;
-        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
         // numbers are measured by how far they go, one that ends with half of all coefficients.
-        let last = if norm.blocks.is_empty() { self.jet.order / 2 } else { 3 };
+        if norm.blocks.is_empty() {
+            let Jet { q, len, .. } = &self.jet;
+            let (tolerance, times, orders) = (&norm.rtol, REFINEMENTS + 1, (highest, highest / 2));
+            return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
+        }
+        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+        let last = 3;
         while highest - 2 > last {
             highest -= 2;
             let untold = inverse.less_equal(S::zero());
@@ -136,64 +150,49 @@ impl<S: Controlled> TaylorStep<S> {
     fn leads_astray(
         &mut self,
         state: &State<S>,
-        elapsed: &S,
         norm: &Norm<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<S::Mask> {
-        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, .. } = self;
-        let (len, t, x) = (*len, *elapsed + *h, *h / *unit);
-        // What a rate moves a number by, in the unit of time.
-        let (of_rates, moves) = match next.form() {
-            Form::FirstOrder(_) => {
-                system.rate(&t, next.all().0, rates, ticker)?;
-                (&q[..], *unit)
-            }
-            Form::SecondOrder(_) => {
-                system.acceleration(&t, next.q(), next.v(), rates, ticker)?;
-                (&v[..], *unit * *unit)
-            }
-        };
-        let (highest, x) = (*order, &x);
-        S::pass(Missed { rates, blocks: of_rates, highest, x, moves: &moves });
-        // Rounding leads nobody astray.
-        let tolerance = norm.rtol.max(S::splat(ROUNDING));
-        let size2 = if norm.blocks.is_empty() {
-            S::pass(OwnMissed { missed: rates, blocks: q, highest, x, tolerance: &tolerance })
+        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, reached: t, .. } = self;
+        let (len, second_order) = (*len, matches!(next.form(), Form::SecondOrder(_)));
+        let blocks = if second_order {
+            system.acceleration(t, next.q(), next.v(), rates, ticker)?;
+            &v[..]
         } else {
-            let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
-            let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
-            let changes = match next.form() {
-                Form::FirstOrder(_) => [change(*x); 2],
-                Form::SecondOrder(_) => [change(*x * *x), change(*x / *unit)],
-            };
-            let rounding = norm.rtol / tolerance;
-            norm.sizes(state, next, &t, &changes)[0] * rounding * rounding
+            system.rate(t, next.all().0, rates, ticker)?;
+            &q[..]
         };
+        let missed = Missed { rates, blocks, highest: *order, times: [h, unit], second_order };
+        // Rounding leads nobody astray.
+        if norm.blocks.is_empty() {
+            let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
+            return Ok(S::pass(OwnMissed { missed, blocks, tolerance, least, most }));
+        }
+        S::pass(missed);
+        let x = *h / *unit;
+        let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
+        let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
+        let changes = if second_order { [change(x * x), change(x / *unit)] } else { [change(x); 2] };
+        let rounding = norm.rtol / norm.rtol.max(S::splat(ROUNDING));
+        let size2 = norm.sizes(state, next, t, &changes)[0] * rounding * rounding;
         Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
     }
 
     /// The state at the time `x` after the expansion.
     fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
         let Jet { q, v, order, rests, unit, .. } = jet;
-        let x = &(x / *unit);
-        if matches!(state.form(), Form::FirstOrder(_)) {
-            let (y, blocks) = (state.all(), &q[..]);
-            let (highest, factor, into) = (*order, &S::one(), into.all_mut());
-            return S::pass(Sum { y, blocks, rest: None, highest, x, factor, into });
-        }
-        let (of_q, of_v) = into.halves_mut();
-        S::pass(Sum {
-            y: state.position(),
-            blocks: q,
-            rest: Some(&rests[1]),
-            highest: order + 1,
-            x,
-            factor: &S::one(),
-            into: of_q,
-        });
-        let factor = &(S::one() / *unit);
-        S::pass(Sum { y: state.velocity(), blocks: v, rest: None, highest: *order, x, factor, into: of_v });
+        let (order, times) = (*order, [&x, unit]);
+        let of = if matches!(state.form(), Form::FirstOrder(_)) {
+            (Sum { y: state.all(), blocks: q, rest: None, highest: order, into: into.all_mut() }, None)
+        } else {
+            let (of_q, of_v) = into.halves_mut();
+            let (y, rest, highest) = (state.position(), Some(&rests[1][..]), order + 1);
+            let places = Sum { y, blocks: q, rest, highest, into: of_q };
+            let y = state.velocity();
+            (places, Some(Sum { y, blocks: v, rest: None, highest: order, into: of_v }))
+        };
+        S::pass(Sums { of, times });
     }
 
     /// The coefficients of one number of a block, of the orders from one on, in powers of the fraction of the step, times
@@ -258,47 +257,49 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         system.expand(&mut self.jet, ticker)?;
         let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
         let least = S::zero().power_below();
-        let choice = |longest: S| {
-            S::pass(Choice {
-                inverse: &inverse,
-                units: [&self.unit, &least],
-                margin: self.margin,
-                longest: &longest,
-                times: [&clock.elapsed, &clock.end],
-                h: &clock.h,
-                running,
-            })
+        let mut choose = |step: &mut Self, smooth: &S| {
+            let Self { unit, margin, rule, bound, too_long, chosen, h, reached, .. } = step;
+            let (units, longest) = ([&*unit, &least], [smooth, &*bound, &rule.max_step]);
+            let (margin, clock, into) = (*margin, &mut *clock, [chosen, h, reached]);
+            S::pass(Choice { inverse: &inverse, units, margin, longest, clock, running, too_long, into })
         };
-        let longest = self.rule.max_step.min(self.bound);
-        let mut chosen = choice(longest);
-        if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
+        let mut told = choose(self, &S::splat(f64::INFINITY));
+        if let Some(smooth) = system.smooth_until(&self.jet, self.chosen) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
-            if smooth.less(chosen[0]).and(running).any() {
-                chosen = choice(longest.min(smooth));
+            if smooth.less(self.chosen).and(running).any() {
+                told = choose(self, &smooth);
             }
         }
-        let [longest, h, size2] = chosen;
-        clock.h = h;
-        self.h = S::next_step(clock, running);
-        let sound = size2.less(S::one());
-        self.too_long = S::select(sound.or(running.not()), self.too_long, self.unit);
-        let far = S::splat(FAR) * self.unit;
-        let again = far.less(longest.min(self.too_long)).and(sound);
-        let size2 = S::select(again, S::splat(HUGE), size2);
+        let Chosen { sound, again } = told;
+        let taken = sound.and(again.not());
         Self::state_at(&self.jet, state, self.h, &mut self.next);
-        let looked_at = size2.less(S::one()).and(running);
+        let looked_at = taken.and(running);
         let astray = if looked_at.any() {
-            looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?)
+            looked_at.and(self.leads_astray(state, norm, system, ticker)?)
         } else {
             S::Mask::splat(false)
         };
-        self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
-        let size2 = S::select(astray, S::splat(HUGE), size2);
+        let good = taken.and(astray.not());
+        if astray.any() {
+            self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
+        }
+        let size2 = if good.all() { S::zero() } else { S::select(good, S::zero(), S::splat(HUGE)) };
         let outcome = S::settle(clock, running, size2, &self.rule);
-        self.too_long = S::select(outcome.accepted, S::splat(f64::INFINITY), self.too_long);
-        self.bound = S::select(outcome.accepted, S::splat(f64::INFINITY), self.bound);
-        let next = S::select(again, far, S::select(sound, longest, clock.h));
-        self.unit = S::select(running, next.power_below(), self.unit);
+        let none = S::splat(f64::INFINITY);
+        if outcome.accepted.all() {
+            (self.too_long, self.bound) = (none, none);
+        } else {
+            self.too_long = S::select(outcome.accepted, none, self.too_long);
+            self.bound = S::select(outcome.accepted, none, self.bound);
+        }
+        let next = if taken.all() {
+            self.chosen
+        } else {
+            let otherwise = S::select(sound, self.chosen, clock.h);
+            S::select(again, S::splat(FAR) * self.unit, otherwise)
+        };
+        let next = next.power_below();
+        self.unit = if running.all() { next } else { S::select(running, next, self.unit) };
         Ok(outcome)
     }
 
