@@ -147,7 +147,7 @@ impl<'a> Abreast<'a> {
         let max_step = request.longest_step(model);
         let (trial, in_step): (Box<dyn SideBySide>, bool) = match request.integrator {
             Integrator::Gauss(method) => {
-                let of = (model.code.clone(), &*parameters, model.form);
+                let of = (model.code.clone(), &*parameters, model.form, model.needs().velocity);
                 let eight = GaussEight::new(method, of, &state, (request.gauss_steps(method), max_step), t0);
                 (Box::new(eight), false)
             }
