@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -264,5 +265,5 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
 
     def _check_start(self) -> None:
         rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
-        if not np.isfinite(rates).all():
+        if not all(map(isfinite, rates.tolist())):
             refuse_a_start(self, self._start(), "a rate of Hamilton's equations is no number")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -314,7 +315,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         return rates
 
     def _has_rates(self, state: NDArray[np.float64]) -> bool:
-        return bool(np.isfinite(self._rates(state)).all())
+        return all(map(isfinite, self._rates(state).tolist()))
 
 
 def _named(error: InvalidInput, names: tuple[str, ...]) -> InvalidInput:

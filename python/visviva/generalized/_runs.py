@@ -101,7 +101,7 @@ class Runs(States):
 
     def _outputs(self, t: ArrayLike) -> NDArray[np.float64]:
         """Give the times that are read: all that are asked for, or of an end the start and it."""
-        if np.ndim(t) == 0:
+        if _is_end(t):
             end = number("t", t)
             return np.array([self.t0] if end == self.t0 else [self.t0, end])
         outputs = float_array("t", t, None)
@@ -211,7 +211,7 @@ class Runs(States):
         asked, outputs = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         self._check_start()
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
-        if np.ndim(t) == 0 and STATUS[result["endings"][0]] is Status.STOPPED:
+        if STATUS[result["endings"][0]] is Status.STOPPED and _is_end(t):
             _end_at_the_stop(result)
         out = GeneralizedTrajectory(as_system(self), result, asked)
         if result["interrupted"]:
@@ -288,6 +288,11 @@ class Runs(States):
 
         asked, _ = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         return GeneralizedPlan._of(as_system(self), asked)
+
+
+def _is_end(t: ArrayLike) -> bool:
+    """Whether a time is asked for, and no row of them."""
+    return isinstance(t, float | int) or np.ndim(t) == 0
 
 
 def _end_at_the_stop(result: dict[str, Any]) -> None:

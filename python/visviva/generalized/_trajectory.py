@@ -123,7 +123,9 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         from visviva.generalized._system import GeneralizedSystem
 
         how = "the run of a Lagrangian or a Hamiltonian"
-        made_by(self, how, system=(system, GeneralizedSystem), result=(result, dict), asked=(asked, dict))
+        known = isinstance(system, GeneralizedSystem) and type(result) is type(asked) is dict
+        if not (known and "t" in result and "outputs" in asked):
+            made_by(self, how, system=(system, GeneralizedSystem), result=(result, dict), asked=(asked, dict))
         lengths = result["lengths"]
         member = whole_number("member", member, 0, len(lengths) - 1)
         first = sum(lengths[:member])

@@ -147,7 +147,7 @@ impl<'a> Abreast<'a> {
         let max_step = request.longest_step(model);
         let (trial, in_step): (Box<dyn SideBySide>, bool) = match request.integrator {
             Integrator::Gauss(method) => {
-                let of = (model.code.clone(), &*parameters, model.form);
+                let of = (model.code.clone(), &*parameters, model.form, model.needs().velocity);
                 let eight = GaussEight::new(method, of, &state, (request.gauss_steps(method), max_step), t0);
                 (Box::new(eight), false)
             }
@@ -316,10 +316,14 @@ impl<'a> Abreast<'a> {
         let mut kept = Bits(0);
         let (t0, end) = self.request.span;
         // Nothing times a number is no number where that is none, or infinite.
-        let next = self.trial.next().all().0.iter();
-        let nothing = next.fold(Lanes::zero(), |sum, &y| sum + y * Lanes::zero());
+        let mut nothing = [0.0; WIDTH];
+        for y in self.trial.next().all().0 {
+            for (nothing, y) in nothing.iter_mut().zip(y.0) {
+                *nothing += y * 0.0;
+            }
+        }
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
-            let finite = nothing.0[lane] == 0.0;
+            let finite = nothing[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
             let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
             let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));

@@ -26,7 +26,6 @@ pub(super) struct LongestStep<'a, S> {
 }
 
 impl<S: Element> Pass<S> for LongestStep<'_, S> {
-    /// In the unit of time of the series.
     type Output = S;
     #[inline(always)]
     fn run<V: View<S>>(self) -> S {
@@ -40,13 +39,13 @@ impl<S: Element> Pass<S> for LongestStep<'_, S> {
         for terms in [1, TERMS] {
             for index in 0..*len {
                 if felt.all() {
-                    return h.store();
+                    return *self.h;
                 }
                 let of = Terms { blocks, len: *len, index, step };
                 felt = felt.or(if second_order { of.change_velocity(terms) } else { of.change(terms) });
             }
         }
-        V::select(felt, h, h.min(longest_free)).store()
+        (V::select(felt, h, h.min(longest_free)) * unit).store()
     }
 }
 

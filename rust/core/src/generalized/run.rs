@@ -237,7 +237,8 @@ fn solve_within(
             let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             let machine = Machine::new(model.code.clone(), &lanes);
             let steps = (request.gauss_steps(method), max_step);
-            let trial = GaussStep::new(method, (machine, model.form), drive.state, steps, t0);
+            let trial =
+                GaussStep::new(method, (machine, model.form, model.needs().velocity), drive.state, steps, t0);
             drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
         }
         Integrator::Linear(ref linear) => return linear.solve(request, (y0, parameters), drive.ticker),

@@ -76,8 +76,8 @@ pub trait View<S>: InverseCube {
     fn mask(mask: S::Mask) -> Self::Mask
     where
         S: Real;
-    /// The other way round.
-    fn own_mask(mask: Self::Mask) -> S::Mask
+    /// And back.
+    fn mask_in_memory(mask: Self::Mask) -> S::Mask
     where
         S: Real;
 }
@@ -122,7 +122,7 @@ macro_rules! own_view {
                 mask
             }
             #[inline(always)]
-            fn own_mask(mask: bool) -> bool {
+            fn mask_in_memory(mask: bool) -> bool {
                 mask
             }
         }
@@ -152,7 +152,7 @@ impl<V: Vector8 + InverseCube> View<Lanes> for V {
         mask
     }
     #[inline(always)]
-    fn own_mask(mask: super::lanes::Bits) -> super::lanes::Bits {
+    fn mask_in_memory(mask: Self::Mask) -> super::lanes::Bits {
         mask
     }
 }

@@ -5,7 +5,8 @@
 //! Step control: Hairer, Nørsett & Wanner, *Solving ODE I*, II.4.
 
 use crate::numerics::double_double::{DoubleDouble, two_sum};
-use crate::numerics::element::Element;
+use crate::numerics::element::{Element, View};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::{Mask, Real};
@@ -102,9 +103,22 @@ impl<S: Real> Clock<S> {
         self.h = S::select(longest.less(self.h.abs()), shorter, self.h);
     }
 
+    /// In registers.
+    #[inline(always)]
+    pub(super) fn load<V: View<S>>(&self) -> Clock<V> {
+        // Not `map`, which may be compiled without the tier's instructions.
+        Clock {
+            elapsed: V::load(self.elapsed),
+            error: V::load(self.error),
+            h: V::load(self.h),
+            end: V::load(self.end),
+            rejected: V::mask(self.rejected),
+        }
+    }
+
     /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
     #[inline(always)]
-    fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
+    pub(super) fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
         let remaining = (self.end - self.elapsed) - self.error;
         // A last step a little longer than planned beats a last step of nothing.
         let last = remaining.abs().less_equal(self.h.abs() * S::splat(1.0 + 1e-9));
@@ -245,34 +259,21 @@ macro_rules! controlled {
 }
 controlled!(f64 DoubleDouble);
 
-/// The clock in the tier's registers.
 #[inline(always)]
-fn load<V: Vector8>(clock: &Clock<Lanes>) -> Clock<V> {
-    // Not `map`, which may be compiled without the tier's instructions.
-    Clock {
-        elapsed: V::load(clock.elapsed),
-        error: V::load(clock.error),
-        h: V::load(clock.h),
-        end: V::load(clock.end),
-        rejected: clock.rejected,
-    }
+fn next_step_lanes<V: Vector8 + InverseCube>(clock: &Clock<Lanes>, running: Bits) -> Lanes {
+    clock.load::<V>().next_step(running).0.store()
 }
 
 #[inline(always)]
-fn next_step_lanes<V: Vector8>(clock: &Clock<Lanes>, running: Bits) -> Lanes {
-    load::<V>(clock).next_step(running).0.store()
-}
-
-#[inline(always)]
-fn settle_lanes<V: Vector8>(
+fn settle_lanes<V: Vector8 + InverseCube>(
     clock: &mut Clock<Lanes>,
     running: Bits,
     size2: Lanes,
     rule: &Rule<Lanes>,
 ) -> Settled<Lanes> {
-    let mut now = load::<V>(clock);
-    let rule = Rule { power: rule.power, max_step: V::load(rule.max_step), limits: rule.limits };
-    let Settled { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), &rule);
+    let mut now = clock.load::<V>();
+    let rule = Rule { power: rule.power, max_step: Vector8::load(rule.max_step), limits: rule.limits };
+    let Settled { accepted, finished, stuck, from, h } = now.settle(running, Vector8::load(size2), &rule);
     let Clock { elapsed, error, h: next, end, rejected } = now;
     *clock =
         Clock { elapsed: elapsed.store(), error: error.store(), h: next.store(), end: end.store(), rejected };

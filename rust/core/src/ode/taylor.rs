@@ -7,9 +7,8 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{
-    Choice, Expanded, Judged, LargestRoot, Missed, NextUnit, OwnInverse, OwnMissed, Sum, nest,
-};
+use super::passes::series::{LargestRoot, OwnInverse, Sum, Sums, nest};
+use super::passes::step_by_series::{Choice, Chosen, FAR, Missed, OwnMissed};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -24,9 +23,6 @@ use crate::parallel::Ticker;
 
 /// Of a step that does not end well, so much is tried next.
 const SHRINK: f64 = 1.0 / 256.0;
-/// Of a step of so many units of time the last coefficients may be too small for all their digits, and for a step that other
-/// units of the scene leave as it is: the motion is expanded once more, in a unit longer by this.
-const FAR: f64 = 4_294_967_296.0; // 2^32
 /// Of the whole time, the shortest unit with which a run begins: a body that hardly moves would ask for less.
 const BRIEFEST: f64 = 1.0 / (FAR * FAR * FAR * FAR);
 /// A tolerance ε asks for the order `-ln(ε)/2 + 1` (Jorba & Zou); so much for the 1, as what a step costs besides its
@@ -55,20 +51,19 @@ const REFINEMENTS: usize = 1;
 pub struct TaylorStep<S: Element> {
     orders: Taylor,
     jet: Jet<S>,
-    /// The unit of time of the next expansion, and the shortest there is.
+    /// The unit of time of the next expansion.
     unit: S,
-    least: S,
     /// The shortest unit that was too long for this step.
     too_long: S,
     /// The longest step after one that led astray.
     bound: S,
-    /// The step tried last.
+    /// The step tried last, as long as it was chosen, and the time at its end.
     h: S,
+    chosen: S,
+    reached: S,
     rule: Rule<S>,
     /// What the step is multiplied with, for the margin.
     margin: f64,
-    /// The squared scaled size of what rates at the end of a step may miss.
-    most_missed: S,
     next: State<S>,
     /// The rates at its end.
     rates: Vec<S>,
@@ -84,17 +79,18 @@ impl<S: Controlled> TaylorStep<S> {
         let jet = Jet::new(len, orders.highest);
         let none = S::splat(f64::INFINITY);
         let (unit, h, next, rates) = (S::one(), S::zero(), state.clone(), vec![S::zero(); len]);
+        let (chosen, reached) = (h, h);
         Self {
             orders,
             jet,
             unit,
-            least: S::zero().power_below(),
             too_long: none,
             bound: none,
             h,
+            chosen,
+            reached,
             rule,
             margin: 1.0,
-            most_missed: none,
             next,
             rates,
         }
@@ -110,21 +106,10 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
-    /// One over the step that the coefficients of two orders allow, and where they vanish.
-    fn inverse_step_of(
-        &self,
-        pair: [usize; 2],
-        state: &State<S>,
-        elapsed: &S,
-        norm: &Norm<S>,
-    ) -> (S, S::Mask) {
-        if !norm.blocks.is_empty() {
-            let squares = self.sizes(pair, state, elapsed, norm);
-            return S::pass(LargestRoot { squares, orders: pair });
-        }
-        let Jet { q, len, .. } = &self.jet;
-        let (tolerance, times) = (&norm.rtol, REFINEMENTS + 1);
-        S::pass(OwnInverse { blocks: q, len: *len, orders: pair, tolerance, times })
+    /// One over the step that the coefficients of two orders allow, where vectors are measured.
+    fn inverse_step_of(&self, pair: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
+        let squares = self.sizes(pair, state, elapsed, norm);
+        S::pass(LargestRoot { squares, orders: pair })
     }
 
     /// The squared scaled sizes of the coefficients of two orders.
@@ -142,18 +127,23 @@ impl<S: Controlled> TaylorStep<S> {
     /// One over the longest step that the coefficients allow, in their unit of time.
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut highest = self.jet.order;
-        let (mut inverse, mut untold) = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
         // numbers are measured by how far they go, one that ends with half of all coefficients.
-        let last = if norm.blocks.is_empty() { self.jet.order / 2 } else { 3 };
+        if norm.blocks.is_empty() {
+            let Jet { q, len, .. } = &self.jet;
+            let (tolerance, times, orders) = (&norm.rtol, REFINEMENTS + 1, (highest, highest / 2));
+            return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
+        }
+        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+        let last = 3;
         while highest - 2 > last {
             highest -= 2;
+            let untold = inverse.less_equal(S::zero());
             if !untold.and(running).any() {
                 break;
             }
-            let (found, still) = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
             inverse = S::select(untold, found, inverse);
-            untold = untold.and(still);
         }
         inverse
     }
@@ -163,64 +153,49 @@ impl<S: Controlled> TaylorStep<S> {
     fn leads_astray(
         &mut self,
         state: &State<S>,
-        elapsed: &S,
         norm: &Norm<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<S::Mask> {
-        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, .. } = self;
-        let (len, highest, t) = (*len, *order, *elapsed + *h);
-        let second_order = matches!(next.form(), Form::SecondOrder(_));
+        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, reached: t, .. } = self;
+        let (len, second_order) = (*len, matches!(next.form(), Form::SecondOrder(_)));
         let blocks = if second_order {
-            system.acceleration(&t, next.q(), next.v(), rates, ticker)?;
+            system.acceleration(t, next.q(), next.v(), rates, ticker)?;
             &v[..]
         } else {
-            system.rate(&t, next.all().0, rates, ticker)?;
+            system.rate(t, next.all().0, rates, ticker)?;
             &q[..]
         };
-        let (x, moved) = S::pass(Missed { rates, blocks, highest, h, unit, second_order });
-        let size2 = if norm.blocks.is_empty() {
-            S::pass(OwnMissed { missed: rates, blocks: q, highest, x: &x, tolerance: &norm.rtol })
-        } else {
-            let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
-            let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
-            norm.sizes(state, next, &t, &moved.map(change))[0]
-        };
-        Ok(size2.less_equal(self.most_missed).not())
-    }
-
-    /// What held attempts of the step short in these lanes holds the next one no more.
-    fn forget_bounds(&mut self, lanes: S::Mask) {
-        let none = S::splat(f64::INFINITY);
-        if lanes.all() {
-            (self.too_long, self.bound) = (none, none);
-        } else {
-            self.too_long = S::select(lanes, none, self.too_long);
-            self.bound = S::select(lanes, none, self.bound);
+        let missed = Missed { rates, blocks, highest: *order, times: [h, unit], second_order };
+        // Rounding leads nobody astray.
+        if norm.blocks.is_empty() {
+            let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
+            return Ok(S::pass(OwnMissed { missed, blocks, tolerance, least, most }));
         }
+        S::pass(missed);
+        let x = *h / *unit;
+        let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
+        let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
+        let changes = if second_order { [change(x * x), change(x / *unit)] } else { [change(x); 2] };
+        let rounding = norm.rtol / norm.rtol.max(S::splat(ROUNDING));
+        let size2 = norm.sizes(state, next, t, &changes)[0] * rounding * rounding;
+        Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
     }
 
-    /// The state at the time `t` after the expansion.
-    fn state_at(jet: &Jet<S>, state: &State<S>, t: &S, into: &mut State<S>) {
+    /// The state at the time `x` after the expansion.
+    fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
         let Jet { q, v, order, rests, unit, .. } = jet;
-        if matches!(state.form(), Form::FirstOrder(_)) {
-            let (y, blocks) = (state.all(), &q[..]);
-            let (highest, into) = (*order, into.all_mut());
-            return S::pass(Sum { y, blocks, rest: None, highest, t, unit, velocities: false, into });
-        }
-        let (of_q, of_v) = into.halves_mut();
-        S::pass(Sum {
-            y: state.position(),
-            blocks: q,
-            rest: Some(&rests[1]),
-            highest: order + 1,
-            t,
-            unit,
-            velocities: false,
-            into: of_q,
-        });
-        let (y, highest) = (state.velocity(), *order);
-        S::pass(Sum { y, blocks: v, rest: None, highest, t, unit, velocities: true, into: of_v });
+        let (order, times) = (*order, [&x, unit]);
+        let of = if matches!(state.form(), Form::FirstOrder(_)) {
+            (Sum { y: state.all(), blocks: q, rest: None, highest: order, into: into.all_mut() }, None)
+        } else {
+            let (of_q, of_v) = into.halves_mut();
+            let (y, rest, highest) = (state.position(), Some(&rests[1][..]), order + 1);
+            let places = Sum { y, blocks: q, rest, highest, into: of_q };
+            let y = state.velocity();
+            (places, Some(Sum { y, blocks: v, rest: None, highest: order, into: of_v }))
+        };
+        S::pass(Sums { of, times });
     }
 
     /// The step as who asks what it has not seen is shown it.
@@ -295,10 +270,8 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let share = MARGIN * Real::min(1.0, LOOSEST / rtol);
         self.margin = share.rough_power(1.0 / self.jet.order as f64);
         let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
-        // Rounding leads nobody astray: tolerances below it are as good as that.
-        let most = norm.rtol.max(S::splat(ROUNDING)) / norm.rtol * S::splat(NEXT_ORDERS);
-        self.most_missed = most * most;
-        self.forget_bounds(fresh);
+        self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
+        self.bound = S::select(fresh, S::splat(f64::INFINITY), self.bound);
         if norm.blocks.is_empty() {
             let unit = (span * S::splat(FIRST_UNIT)).power_below();
             self.unit = S::select(fresh, unit, self.unit);
@@ -327,56 +300,60 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         self.jet.begin(state, clock.elapsed, self.unit);
         system.expand(&mut self.jet, ticker)?;
         let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
-        let choice = |bound: &S| {
-            S::pass(Choice {
-                inverse: &inverse,
-                units: [&self.unit, &self.least],
-                margin: self.margin,
-                longest: [&self.rule.max_step, bound],
-                times: [&clock.elapsed, &clock.end],
-                h: &clock.h,
-                running,
-            })
+        let least = S::zero().power_below();
+        let mut choose = |step: &mut Self, smooth: &S| {
+            let Self { unit, margin, rule, bound, too_long, chosen, h, reached, .. } = step;
+            let (units, longest) = ([&*unit, &least], [smooth, &*bound, &rule.max_step]);
+            let (margin, clock, into) = (*margin, &mut *clock, [chosen, h, reached]);
+            S::pass(Choice { inverse: &inverse, units, margin, longest, clock, running, too_long, into })
         };
-        let mut chosen = choice(&self.bound);
-        if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
+        let mut told = choose(self, &S::splat(f64::INFINITY));
+        if let Some(smooth) = system.smooth_until(&self.jet, self.chosen) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
-            if smooth.less(chosen[0]).and(running).any() {
-                chosen = choice(&self.bound.min(smooth));
+            if smooth.less(self.chosen).and(running).any() {
+                told = choose(self, &smooth);
             }
         }
-        let [step, h, size2] = chosen;
-        clock.h = h;
-        self.h = S::next_step(clock, running);
-        let (unit, too_long, far) = (&self.unit, &self.too_long, FAR);
-        let judged = S::pass(Expanded { size2: &size2, unit, too_long, step: &step, far, running });
-        let Judged { too_long, mut size2, sound, again } = judged;
-        self.too_long = too_long;
-        Self::state_at(&self.jet, state, &self.h, &mut self.next);
-        let looked_at = sound.and(again.not()).and(running);
+        let Chosen { sound, again } = told;
+        let taken = sound.and(again.not());
+        Self::state_at(&self.jet, state, self.h, &mut self.next);
+        let looked_at = taken.and(running);
+        let astray = if looked_at.any() {
+            looked_at.and(self.leads_astray(state, norm, system, ticker)?)
+        } else {
+            S::Mask::splat(false)
+        };
+        if astray.any() {
+            self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
+        }
+        let mut good = taken.and(astray.not());
+        let looked_at = looked_at.and(good);
         if looked_at.any() {
-            let mut astray = looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?);
-            if astray.any() {
-                self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
-            }
-            let looked_at = looked_at.and(astray.not());
-            if looked_at.any() {
-                let visited = |lane: usize| self.visited(state, lane);
-                let seen = system.seen_until(&self.taken(looked_at, state, clock.elapsed, &visited))?;
-                if let Some(seen) = seen {
-                    let unseen = seen.less(S::one());
-                    self.bound = S::select(unseen, self.h.abs() * seen, self.bound);
-                    astray = astray.or(unseen);
-                }
-            }
-            if astray.any() {
-                size2 = S::select(astray, S::splat(HUGE), size2);
+            let visited = |lane: usize| self.visited(state, lane);
+            let seen = system.seen_until(&self.taken(looked_at, state, clock.elapsed, &visited))?;
+            if let Some(seen) = seen {
+                let unseen = seen.less(S::one());
+                self.bound = S::select(unseen, self.h.abs() * seen, self.bound);
+                good = good.and(unseen.not());
             }
         }
+        let size2 = if good.all() { S::zero() } else { S::select(good, S::zero(), S::splat(HUGE)) };
         let outcome = S::settle(clock, running, size2, &self.rule);
-        self.forget_bounds(outcome.accepted);
-        let (unit, steps) = (&self.unit, [&step, &clock.h]);
-        self.unit = S::pass(NextUnit { unit, steps, far, sound, again, running }).power_below();
+        let none = S::splat(f64::INFINITY);
+        if outcome.accepted.all() {
+            (self.too_long, self.bound) = (none, none);
+        } else {
+            self.too_long = S::select(outcome.accepted, none, self.too_long);
+            self.bound = S::select(outcome.accepted, none, self.bound);
+        }
+        let next = if taken.all() {
+            self.chosen
+        } else {
+            let otherwise = S::select(sound, self.chosen, clock.h);
+            S::select(again, S::splat(FAR) * self.unit, otherwise)
+        };
+        let next = next.power_below();
+        self.unit = if running.all() { next } else { S::select(running, next, self.unit) };
         Ok(outcome)
     }
 
@@ -393,7 +370,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         into: &mut State<S>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        Self::state_at(&self.jet, state, &(theta * outcome.h), into);
+        Self::state_at(&self.jet, state, theta * outcome.h, into);
         Ok(())
     }
 

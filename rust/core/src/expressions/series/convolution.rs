@@ -4,6 +4,7 @@
 //! the order n, and it is what that needs, one place further. So of even orders both sums go through the coefficients
 //! together: what is read serves two products, and there are twice as many chains to wait for. An odd order adds the rest.
 
+use super::ORDERS;
 use crate::numerics::real::Real;
 
 /// Σ x[i] y[last − i], in four chains.
@@ -37,63 +38,67 @@ pub(super) fn convolved<S: Real>(x: &[S], y: &[S]) -> S {
     (first + second) + (third + fourth)
 }
 
-/// Σ x[i] y[last − 1 − i] and Σ x[i] y[last − i], `y` being longer by one: two chains each.
+/// A coefficient of an order below [`ORDERS`], as all are that sums go through.
 #[inline(always)]
-fn two_orders<S: Real>(x: &[S], y: &[S]) -> (S, S) {
-    let (y, mut further) = (&y[..x.len()], y[x.len()]);
+fn at<S: Real>(of: &[S; ORDERS], order: usize) -> S {
+    debug_assert!(order < ORDERS);
+    // SAFETY: sums up to the order n (which has a next one) begin at its coefficients of n + 1 at most, and go down from there to
+    // those of 1, or up from those of 1 to n.
+    unsafe { *of.get_unchecked(order) }
+}
+
+/// Σ a_j b_{m−j} and Σ a_j b_{m+1−j} of `from` ≤ j < `to`, in two chains each; `to` ≤ m.
+#[inline(always)]
+fn two_orders<S: Real>(a: &[S; ORDERS], b: &[S; ORDERS], (from, to): (usize, usize), m: usize) -> (S, S) {
     let (mut even, mut odd) = ((S::zero(), S::zero()), (S::zero(), S::zero()));
-    let (forward, backward) = (x.chunks_exact(2), y.rchunks_exact(2));
-    let rest = (forward.remainder(), backward.remainder());
-    for two in forward.zip(backward) {
-        if let ([x0, x1], [y0, y1]) = two {
-            even = (x0.multiply_add(*y1, even.0), x0.multiply_add(further, even.1));
-            odd = (x1.multiply_add(*y0, odd.0), x1.multiply_add(*y1, odd.1));
-            further = *y0;
-        }
+    let (mut j, mut further) = (from, at(b, m + 1 - from));
+    while j + 1 < to {
+        let (first, second) = (at(a, j), at(a, j + 1));
+        let (own, next) = (at(b, m - j), at(b, m - j - 1));
+        even = (first.multiply_add(own, even.0), first.multiply_add(further, even.1));
+        odd = (second.multiply_add(next, odd.0), second.multiply_add(own, odd.1));
+        further = next;
+        j += 2;
     }
-    if let ([x], [y]) = rest {
-        even = (x.multiply_add(*y, even.0), x.multiply_add(further, even.1));
+    if j < to {
+        let first = at(a, j);
+        even = (first.multiply_add(at(b, m - j), even.0), first.multiply_add(further, even.1));
     }
     (even.0 + odd.0, even.1 + odd.1)
 }
 
-/// As [`two_orders`] of `x` and of `z`, a chain each.
-#[inline(always)]
-fn two_orders_of_both<S: Real>(x: &[S], z: &[S], y: &[S]) -> ((S, S), (S, S)) {
-    let (z, y, mut further) = (&z[..x.len()], &y[..x.len()], y[x.len()]);
-    let (mut of_x, mut of_z) = ((S::zero(), S::zero()), (S::zero(), S::zero()));
-    for ((x, z), y) in x.iter().zip(z).zip(y.iter().rev()) {
-        of_x = (x.multiply_add(*y, of_x.0), x.multiply_add(further, of_x.1));
-        of_z = (z.multiply_add(*y, of_z.0), z.multiply_add(further, of_z.1));
-        further = *y;
-    }
-    (of_x, of_z)
-}
-
 /// Σ a_j b_{n−j} and Σ a_j b_{n+1−j} of 0 < j < n: the second lacks a_n b_1.
 #[inline(always)]
-pub(super) fn begun<S: Real>(a: &[S], b: &[S], n: usize) -> (S, S) {
-    two_orders(&a[1..n], &b[1..n + 1])
+pub(super) fn begun<S: Real>(a: &[S; ORDERS], b: &[S; ORDERS], n: usize) -> (S, S) {
+    two_orders(a, b, (1, n), n)
 }
 
-/// As [`begun`], of two series in the place of `a`.
+/// As [`begun`], of two series in the place of `a`, a chain each.
 #[inline(always)]
-pub(super) fn both_begun<S: Real>([a, c]: [&[S]; 2], b: &[S], n: usize) -> ((S, S), (S, S)) {
-    two_orders_of_both(&a[1..n], &c[1..n], &b[1..n + 1])
+pub(super) fn both_begun<S: Real>([a, c]: [&[S; ORDERS]; 2], b: &[S; ORDERS], n: usize) -> ((S, S), (S, S)) {
+    let (mut of_a, mut of_c) = ((S::zero(), S::zero()), (S::zero(), S::zero()));
+    let mut further = at(b, n);
+    for j in 1..n {
+        let (a, c, own) = (at(a, j), at(c, j), at(b, n - j));
+        of_a = (a.multiply_add(own, of_a.0), a.multiply_add(further, of_a.1));
+        of_c = (c.multiply_add(own, of_c.0), c.multiply_add(further, of_c.1));
+        further = own;
+    }
+    (of_a, of_c)
 }
 
 /// Σ a_j b_{n−j} of 0 < j < n, and Σ a_j b_{n+1−j} of 0 < j ≤ n, of an even n.
 #[inline(always)]
-pub(super) fn inside<S: Real>(a: &[S], b: &[S], n: usize) -> (S, S) {
+pub(super) fn inside<S: Real>(a: &[S; ORDERS], b: &[S; ORDERS], n: usize) -> (S, S) {
     let (own, later) = begun(a, b, n);
     (own, a[n].multiply_add(b[1], later))
 }
 
 /// As [`inside`] of a square: each product comes twice but the one in the middle.
 #[inline(always)]
-pub(super) fn inside_square<S: Real>(a: &[S], n: usize) -> (S, S) {
+pub(super) fn inside_square<S: Real>(a: &[S; ORDERS], n: usize) -> (S, S) {
     let half = n / 2;
-    let (own, later) = two_orders(&a[1..half], &a[n + 1 - half..n + 1]);
+    let (own, later) = two_orders(a, a, (1, half), n);
     let (middle, next) = (a[half], a[half + 1]);
     let later = middle.multiply_add(next, later);
     (middle.multiply_add(middle, own + own), later + later)

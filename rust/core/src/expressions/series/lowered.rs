@@ -3,7 +3,8 @@
 use super::super::code::{scratch, word};
 use super::super::function::Function;
 use super::super::program::{Operation, Program, Value};
-use super::recurrence::{Entry, Place, Recurrence, inverse};
+use super::expansion::inverse;
+use super::recurrence::{Entry, Place, Recurrence, Recurrences};
 use super::{ORDERS, Series};
 use std::collections::HashMap;
 
@@ -31,15 +32,21 @@ pub(super) fn lowered(program: &Program) -> Series {
     };
     let (preamble, body) = (made(&program.preamble, false), made(&program.body, true));
     let place = |value: Value| lowering.at(value).place;
+    let numbers = lowering.series;
+    let inputs: Vec<Place> = (0..=variables as Value).map(place).collect();
+    let outputs: Vec<Place> = program.outputs.iter().copied().map(place).collect();
+    // What is not below the first input is a series.
+    let is_there = |place: &Place| place + if *place < inputs[0] { 1 } else { ORDERS } <= numbers;
+    assert!(inputs.iter().chain(&outputs).all(is_there), "a place beyond all numbers");
     Series {
         variables,
         parameters,
-        preamble,
-        body,
-        inputs: (0..=variables as Value).map(place).collect(),
-        outputs: program.outputs.iter().copied().map(place).collect(),
+        preamble: Recurrences::new(preamble, numbers, false),
+        body: Recurrences::new(body, numbers, true),
+        inputs,
+        outputs,
         radicands: lowering.radicands,
-        numbers: lowering.series,
+        numbers,
         scratch: lowering.scratch,
         inverses: core::array::from_fn(inverse),
     }

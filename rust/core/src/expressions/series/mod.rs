@@ -6,8 +6,10 @@
 //! R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank & A. Walther, *Evaluating Derivatives* (2008), chapter 13.
 
 mod convolution;
+mod expansion;
 mod lowered;
 mod motion;
+mod numbers;
 mod recurrence;
 mod smooth;
 
@@ -20,7 +22,7 @@ use crate::numerics::real::Real;
 use crate::tiered;
 use motion::Room;
 pub use motion::{Coefficients, Equations};
-use recurrence::Recurrence;
+use recurrence::Recurrences;
 use std::sync::Arc;
 
 /// Coefficients that there is room for.
@@ -33,8 +35,8 @@ pub struct Series {
     variables: usize,
     parameters: usize,
     /// What is done once for each set of parameters.
-    preamble: Vec<Recurrence>,
-    body: Vec<Recurrence>,
+    preamble: Recurrences,
+    body: Recurrences,
     /// Where the state and the time are, and the results.
     inputs: Vec<usize>,
     outputs: Vec<usize>,
@@ -78,14 +80,14 @@ impl Series {
 /// What series hold: a number, or eight.
 pub trait Coefficient: Real {
     /// The coefficients of order `order` of everything that a list of recurrences makes.
-    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]);
+    fn expand(of: &Recurrences, order: Order, numbers: &mut [Self], scratch: &mut [Self]);
 
     /// All coefficients of a motion.
     fn motion(room: Room<'_, Self>, equations: &Equations<'_, Self>, into: Coefficients<'_, Self>);
 }
 
 impl Coefficient for f64 {
-    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
+    fn expand(of: &Recurrences, order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
         one(of, order, numbers, scratch);
     }
 
@@ -95,7 +97,7 @@ impl Coefficient for f64 {
 }
 
 impl Coefficient for Lanes {
-    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
+    fn expand(of: &Recurrences, order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
         lanes(of, order, numbers, scratch);
     }
 
@@ -106,23 +108,23 @@ impl Coefficient for Lanes {
 
 #[inline(always)]
 fn lanes_body<V: Vector8 + Scalar>(
-    of: &[Recurrence],
+    of: &Recurrences,
     order: Order,
     numbers: &mut [Lanes],
     scratch: &mut [Lanes],
 ) {
-    recurrence::expand(of, order, V::view_mut(numbers), V::view_mut(scratch));
+    expansion::expand(of, order, V::view_mut(numbers), V::view_mut(scratch));
 }
 
 #[inline(always)]
 #[expect(clippy::extra_unused_type_parameters, reason = "the tier gives its instructions, not its lanes")]
-fn one_body<V: Vector8>(of: &[Recurrence], order: Order, numbers: &mut [f64], scratch: &mut [f64]) {
-    recurrence::expand(of, order, numbers, scratch);
+fn one_body<V: Vector8>(of: &Recurrences, order: Order, numbers: &mut [f64], scratch: &mut [f64]) {
+    expansion::expand(of, order, numbers, scratch);
 }
 
 tiered! {
-    fn lanes[][](of: &[Recurrence], order: Order, numbers: &mut [Lanes], scratch: &mut [Lanes]) = lanes_body;
-    fn one[][](of: &[Recurrence], order: Order, numbers: &mut [f64], scratch: &mut [f64]) = one_body;
+    fn lanes[][](of: &Recurrences, order: Order, numbers: &mut [Lanes], scratch: &mut [Lanes]) = lanes_body;
+    fn one[][](of: &Recurrences, order: Order, numbers: &mut [f64], scratch: &mut [f64]) = one_body;
 }
 
 /// Series with their coefficients, whose preamble is done.

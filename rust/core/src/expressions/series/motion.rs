@@ -3,7 +3,9 @@
 //! The one idea: between two orders there are a few numbers to be moved, so the way through all orders is one kernel.
 
 use super::super::execute::Scalar;
-use super::{Coefficient, Expansion, Series, recurrence};
+use super::expansion::{self, HIGHEST};
+use super::numbers::Numbers;
+use super::{Coefficient, Expansion, Series};
 use crate::numerics::element::{Scaled, View};
 use crate::numerics::integrals::over;
 use crate::numerics::lanes::{Lanes, Vector8};
@@ -60,38 +62,58 @@ fn motion<S: Copy, V: View<S> + Scalar>(
     into: Coefficients<'_, S>,
 ) {
     let Equations { second_order, velocity, t, unit, inverse } = *equations;
-    let Series { body, inputs, outputs, variables, inverses, .. } = room.series;
+    let Series { body, inputs, outputs, variables, inverses, numbers: many, .. } = room.series;
     let (numbers, scratch) = (V::view_mut(room.numbers), V::view_mut(room.scratch));
     let Coefficients { order, len, q, v } = into;
     let (q, v, unit) = (V::view_mut(q), V::view_mut(v), V::load(unit));
+    assert!(order <= HIGHEST, "no room for the order {order}");
     let per_unit = V::one() / unit;
     let unit_of_rates = if second_order { unit * unit } else { unit };
+    let with_velocity = second_order && velocity;
+    let time = inputs[*variables];
+    (numbers[time], numbers[time + 1], numbers[time + 2]) = (V::load(t), unit, V::zero());
+    // Indices in slices of one length need no further look, and no more to begin with.
+    let (of_q, of_rates) = (&inputs[..len], &outputs[..len]);
+    let of_v = if with_velocity { &inputs[len..][..len] } else { of_q };
     for n in 0..order {
-        for index in 0..len {
-            numbers[inputs[index] + n] = q[n * len + index];
-            if second_order && velocity {
-                numbers[inputs[len + index] + n] = v[n * len + index] * per_unit;
+        let now = &q[n * len..][..len];
+        {
+            let mut numbers = Numbers::new(numbers, *many);
+            for i in 0..len {
+                numbers.series_mut(of_q[i])[n] = now[i];
+            }
+            if with_velocity {
+                let now = &v[n * len..][..len];
+                for i in 0..len {
+                    numbers.series_mut(of_v[i])[n] = now[i] * per_unit;
+                }
             }
         }
-        if n <= 2 {
-            numbers[inputs[*variables] + n] = match n {
-                0 => V::load(t),
-                1 => unit,
-                _ => V::zero(),
-            };
+        if n == 0 {
+            expansion::values(body, numbers, scratch);
+        } else {
+            expansion::expand_further(body, (n, inverses[n]), &mut Numbers::new(numbers, *many), scratch);
         }
-        recurrence::expand(body, (n, inverses[n]), numbers, scratch);
-        let (of_rates, further) = (scaled::<S, V>(&inverse[n + 1]), scaled::<S, V>(&inverse[n + 2]));
-        for (index, &place) in outputs[..len].iter().enumerate() {
+        let (once, twice) = (scaled::<S, V>(&inverse[n + 1]), scaled::<S, V>(&inverse[n + 2]));
+        let numbers = Numbers::new(numbers, *many);
+        let first = if second_order { &mut *v } else { &mut *q };
+        let raised = &mut first[(n + 1) * len..][..len];
+        for i in 0..len {
             // Constants have no further coefficient.
-            let constant = n > 0 && place < inputs[0];
-            let rate = if constant { V::zero() } else { numbers[place + n] };
-            let raised = over(rate * unit_of_rates, of_rates);
-            if second_order {
-                v[(n + 1) * len + index] = raised;
-                q[(n + 2) * len + index] = over(raised, further);
+            let place = of_rates[i];
+            let rate = if place >= inputs[0] {
+                numbers.series(place)[n]
+            } else if n == 0 {
+                numbers.value(place)
             } else {
-                q[(n + 1) * len + index] = raised;
+                V::zero()
+            };
+            raised[i] = over(rate * unit_of_rates, once);
+        }
+        if second_order {
+            let (raised, again) = (&v[(n + 1) * len..][..len], &mut q[(n + 2) * len..][..len]);
+            for i in 0..len {
+                again[i] = over(raised[i], twice);
             }
         }
     }

@@ -5,8 +5,9 @@
 //! the code four at a time, which share what is interpreted.
 
 use super::Table;
+use super::changes::Changes;
 use super::pace::FADING;
-use super::step::{AGAIN, Changes, LEAST_SCALE, MOST_ITERATIONS, WILD, limit};
+use super::step::{AGAIN, LEAST_SCALE, MOST_ITERATIONS, WILD, limit};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -31,9 +32,13 @@ pub(super) struct Columns {
     pub(super) rates: Vec<Row>,
     /// Where they began.
     pub(super) guess: Vec<Row>,
-    /// The numbers that are iterated (velocities, of the second order), and the coordinates of the second order.
+    /// The numbers whose rates these are (velocities, of the second order), and the coordinates of the second order.
     numbers: Vec<Row>,
     places: Vec<Row>,
+    /// Where those would be without accelerations, from the coordinates.
+    drifts: Vec<Row>,
+    /// The most by which an iteration moved rates.
+    moved: Vec<Lanes>,
     /// What a number is measured by, inverted.
     pub(super) scales: Vec<Lanes>,
     /// How large numbers were and how far they went, lately.
@@ -51,7 +56,9 @@ impl Columns {
             rates: rows.clone(),
             guess: rows.clone(),
             numbers: rows.clone(),
-            places: rows,
+            places: rows.clone(),
+            drifts: rows,
+            moved: row.clone(),
             scales: row.clone(),
             sizes: row.clone(),
             tried: row.clone(),
@@ -84,6 +91,8 @@ pub(super) struct Settled {
 pub(super) struct Work<'a> {
     pub(super) table: &'static Table,
     pub(super) form: Form,
+    /// Whether accelerations look at velocities.
+    pub(super) velocity: bool,
     pub(super) machine: &'a mut Blocks<AT_ONCE>,
     pub(super) state: &'a State<Lanes>,
     pub(super) columns: &'a mut Columns,
@@ -163,50 +172,116 @@ fn set_scales<V: Vector8>(
     }
 }
 
+/// Writes the numbers of all stages that their rates lead to.
+#[inline(always)]
+fn place_stages<V: Vector8>(work: &mut Work<'_>, h: V, count: usize) {
+    let Work { table, form, velocity, state, columns, .. } = work;
+    let (evaluated, second_order) = (form.evaluated(), matches!(form, Form::SecondOrder(_)));
+    let (y, rest) = state.all();
+    let h2 = h * h;
+    for i in 0..evaluated {
+        let row = &columns.rates[i];
+        if second_order {
+            let y = V::load(y[i]);
+            for k in 0..count {
+                let sum = combined!(count, row, j => V::splat(table.a2[j].0[k]));
+                columns.places[i][k] = (sum.multiply_add(h2, V::load(columns.drifts[i][k])) + y).store();
+            }
+        }
+        if !second_order || *velocity {
+            let from = if second_order { evaluated + i } else { i };
+            let (y, rest) = (V::load(y[from]), V::load(rest[from]));
+            for k in 0..count {
+                let sum = combined!(count, row, j => V::splat(table.a[j].0[k]));
+                columns.numbers[i][k] = (sum.multiply_add(h, rest) + y).store();
+            }
+        }
+    }
+}
+
+/// Writes where the stages of the second order would be without accelerations, from the coordinates.
+#[inline(always)]
+fn drift<V: Vector8>(work: &mut Work<'_>, h: V, count: usize) {
+    let Work { table, form, state, columns, .. } = work;
+    let (y, rest) = state.all();
+    let evaluated = form.evaluated();
+    for k in 0..count {
+        let c = V::splat(table.c.0[k]);
+        let passed = c * h;
+        let passed_rest = V::splat(table.c_rest.0[k]).multiply_add(h, c.multiply_add(h, -passed));
+        for (i, drifts) in columns.drifts.iter_mut().enumerate() {
+            let v = V::load(y[evaluated + i]);
+            let left_out = passed_rest.multiply_add(v, V::load(rest[i]));
+            drifts[k] = passed.multiply_add(v, left_out).store();
+        }
+    }
+}
+
 /// Iterates the stages from `columns.rates` on until nothing changes in any lane.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
-    let Work { table, form, machine, state, columns, t, h, fading, running } = work;
-    let (code, registers) = machine.parts();
-    let (variables, outputs, count) = (code.variables(), code.output_registers(), table.columns());
+    let (table, form, running, count) = (work.table, work.form, work.running, work.table.columns());
     let evaluated = form.evaluated();
     let second_order = matches!(form, Form::SecondOrder(_));
-    let (y, rest) = state.all();
-    let (h, t) = (V::load(*h), V::load(*t));
-    let h2 = h * h;
+    let all_move = !second_order || work.velocity;
+    let (h, t) = (V::load(work.h), V::load(work.t));
+    if second_order {
+        drift(work, h, count);
+    }
     let mut settled = Settled { converged: Bits::splat(false), evaluations: [MOST_ITERATIONS; WIDTH] };
     let mut changes = [Changes::default(); WIDTH];
     let mut limit = Lanes::splat(f64::INFINITY);
-    let mut active = *running;
-    for iteration in 0..MOST_ITERATIONS {
-        let mut most = V::zero();
-        for k in 0..count {
-            let mut change = V::zero();
-            let c = V::splat(table.c.0[k]);
-            let passed = c * h;
-            let passed_rest = V::splat(table.c_rest.0[k]).multiply_add(h, c.multiply_add(h, -passed));
-            for i in 0..evaluated {
-                let from = if second_order { evaluated + i } else { i };
-                let (row, y_from) = (&columns.rates[i], V::load(y[from]));
-                let sum = combined!(count, row, j => V::splat(table.a[j].0[k]));
-                let number = sum.multiply_add(h, V::load(rest[from])) + y_from;
-                let before = V::load(columns.numbers[i][k]);
-                let scale = V::load(columns.scales[i]).min(V::load(limit));
-                change = change.max((number - before).abs() * scale);
-                columns.numbers[i][k] = number.store();
-                if second_order {
-                    let left_out = passed_rest.multiply_add(y_from, V::load(rest[i]));
-                    let drift = passed.multiply_add(y_from, left_out);
-                    let sum = combined!(count, row, j => V::splat(table.a2[j].0[k]));
-                    columns.places[i][k] = (sum.multiply_add(h2, drift) + V::load(y[i])).store();
+    let mut active = running;
+    for iteration in 1..=MOST_ITERATIONS {
+        place_stages(work, h, count);
+        let Work { machine, state, columns, fading, .. } = &mut *work;
+        let (code, registers) = machine.parts();
+        let (variables, outputs) = (code.variables(), code.output_registers());
+        columns.moved.fill(Lanes([0.0; WIDTH]));
+        for first in (0..count).step_by(AT_ONCE) {
+            // What begins is the same in every iteration, and has no weight.
+            if iteration > 1 && first >= table.stages {
+                break;
+            }
+            for block in 0..AT_ONCE {
+                let k = (first + block).min(count - 1);
+                registers[variables * AT_ONCE + block] = (V::splat(table.c.0[k]) * h + t).store();
+                for i in 0..evaluated {
+                    if second_order {
+                        registers[i * AT_ONCE + block] = columns.places[i][k];
+                    }
+                    if all_move {
+                        let from = if second_order { evaluated + i } else { i };
+                        registers[from * AT_ONCE + block] = columns.numbers[i][k];
+                    }
                 }
             }
-            most = larger(change, most);
+            execute::execute::<V, AT_ONCE>(code, Part::Body, V::view_mut(registers));
+            for ((row, moved), &output) in columns.rates.iter_mut().zip(&mut columns.moved).zip(outputs) {
+                let mut most = V::load(*moved);
+                for block in 0..AT_ONCE.min(count - first) {
+                    let found = V::load(registers[usize::from(output) * AT_ONCE + block]);
+                    let rate = &mut row[first + block];
+                    let before = V::load(*rate);
+                    if first + block < table.stages {
+                        most = larger((found - before).abs(), most);
+                    }
+                    *rate = V::select(active, found, before).store();
+                }
+                *moved = most.store();
+            }
+        }
+        if iteration == 1 {
+            set_scales(columns, count, form.measured(state.all().0), (h, V::load(*fading)), running);
+        }
+        let mut most = V::zero();
+        for (&moved, &scale) in columns.moved.iter().zip(&columns.scales) {
+            most = larger(V::load(moved) * (V::load(scale).min(V::load(limit)) * h.abs()), most);
         }
         let most = most.store();
         let open = active;
         for lane in (0..WIDTH).filter(|&lane| open.lane(lane)) {
-            let judged = changes[lane].judged(iteration, most.0[lane], || columns.limit(lane));
+            let judged = changes[lane].judged(most.0[lane], || columns.limit(lane));
             limit.0[lane] = changes[lane].limit;
             if let Some(converged) = judged {
                 let lane_alone = Bits(1 << lane);
@@ -218,35 +293,6 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         }
         if !active.any() {
             break;
-        }
-        for first in (0..count).step_by(AT_ONCE) {
-            // What begins is the same in every iteration, and has no weight.
-            if iteration > 0 && first >= table.stages {
-                break;
-            }
-            for block in 0..AT_ONCE {
-                let k = (first + block).min(count - 1);
-                registers[variables * AT_ONCE + block] = (V::splat(table.c.0[k]) * h + t).store();
-                for i in 0..evaluated {
-                    let from = if second_order { evaluated + i } else { i };
-                    registers[from * AT_ONCE + block] = columns.numbers[i][k];
-                    if second_order {
-                        registers[i * AT_ONCE + block] = columns.places[i][k];
-                    }
-                }
-            }
-            execute::execute::<V, AT_ONCE>(code, Part::Body, V::view_mut(registers));
-            for (row, &output) in columns.rates.iter_mut().zip(outputs) {
-                for block in 0..AT_ONCE.min(count - first) {
-                    let found = V::load(registers[usize::from(output) * AT_ONCE + block]);
-                    let rate = &mut row[first + block];
-                    *rate = V::select(active, found, V::load(*rate)).store();
-                }
-            }
-        }
-        if iteration == 0 {
-            let y = if second_order { &y[evaluated..] } else { y };
-            set_scales(columns, count, y, (h, V::load(*fading)), *running);
         }
     }
     settled

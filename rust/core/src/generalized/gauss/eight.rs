@@ -5,13 +5,12 @@
 
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
 use super::columns::{advance, found};
-use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
-use super::rounding::{HARDLY, Rounding};
+use super::rounding::HARDLY;
 use super::told::{astray, felt, led, led_to, missed};
 use super::trial::{NO_SHADOW, no_convergence};
-use super::{Method, Table};
+use super::{Beyond, Method, Table};
 use crate::error::Result;
 use crate::expressions::Code;
 use crate::expressions::machine::Blocks;
@@ -30,9 +29,10 @@ use std::sync::Arc;
 /// A collocation method at work on eight trajectories.
 pub struct GaussEight {
     table: &'static Table,
-    ending: Ending,
-    rounding: Rounding,
+    beyond: &'static Beyond,
     form: Form,
+    /// Whether accelerations look at velocities.
+    velocity: bool,
     machine: Blocks<AT_ONCE>,
     columns: Columns,
     /// Rates of the last kept steps, and their lengths.
@@ -63,7 +63,7 @@ impl GaussEight {
     /// At work on states like `state`; the code gives the rates of the first order, the accelerations of the second.
     pub fn new(
         method: &'static Method,
-        (code, parameters, form): (Arc<Code>, &[Lanes], Form),
+        (code, parameters, form, velocity): (Arc<Code>, &[Lanes], Form, bool),
         state: &State<Lanes>,
         (steps, longest): (Steps, f64),
         t0: f64,
@@ -71,9 +71,9 @@ impl GaussEight {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
-            ending: Ending::of(method.table),
-            rounding: Rounding::of(method.table),
+            beyond: method.beyond(),
             form,
+            velocity,
             machine: Blocks::new(code, parameters),
             columns: Columns::new(evaluated),
             before: vec![NOTHING; evaluated],
@@ -128,7 +128,7 @@ impl GaussEight {
         let mut rounding = largest;
         for (lane, pace) in self.paces.iter().enumerate() {
             let steps = (self.length.0[lane], h.0[lane]);
-            rounding.0[lane] *= self.rounding.astray(self.table, pace.kept, steps);
+            rounding.0[lane] *= self.beyond.rounding.astray(self.table, pace.kept, steps);
         }
         for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
             let mut away = astray(rates, guess, self.table.stages);
@@ -158,10 +158,10 @@ impl GaussEight {
             self.taken[lane] += 1;
         }
         let stages = self.table.stages;
-        let mut most = missed(&self.ending.weights, stages, &self.columns, &self.ends, h);
+        let mut most = missed(&self.beyond.ending.weights, stages, &self.columns, &self.ends, h);
         let first = self.lanes(|_, pace| pace.kept == 0).and(asked);
         if first.any() {
-            let begun = missed(&self.ending.first, stages, &self.columns, &self.begin, h);
+            let begun = missed(&self.beyond.ending.first, stages, &self.columns, &self.begin, h);
             for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
                 let (begun, most) = (begun.0[lane], &mut most.0[lane]);
                 *most = if begun <= *most { *most } else { begun };
@@ -297,8 +297,9 @@ impl Trial<Lanes> for GaussEight {
         let t = Lanes::splat(self.t0) + clock.elapsed;
         let fading =
             Lanes(core::array::from_fn(|lane| self.paces[lane].fading(self.length.0[lane], h.0[lane])));
-        let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.columns);
-        let mut work = Work { table, form, machine, state, columns, t, h, fading, running };
+        let Self { table, form, velocity, machine, columns, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running };
         let iterated = found(&mut work);
         advance(&work, &mut self.next);
         self.count(&iterated, running);
@@ -315,7 +316,7 @@ impl Trial<Lanes> for GaussEight {
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let pace = &mut self.paces[lane];
             pace.missed = missed.0[lane];
-            if pace.refuses(self.steps, &self.ending) {
+            if pace.refuses(self.steps, &self.beyond.ending) {
                 errors.0[lane] = 4.0;
                 if matches!(self.steps, Steps::Equal(_)) {
                     self.lost[lane] = Some(no_convergence(h.0[lane]));
@@ -368,10 +369,10 @@ impl Trial<Lanes> for GaussEight {
         let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
         led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.rates);
         self.shadow.sizes.copy_from_slice(&self.columns.tried);
-        let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.shadow);
-        let (t, h) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta);
-        let fading = Lanes::one();
-        let mut work = Work { table, form, machine, state, columns, t, h, fading, running: asked };
+        let (t, h, fading) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta, Lanes::one());
+        let Self { table, form, velocity, machine, shadow: columns, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running: asked };
         let iterated = found(&mut work);
         advance(&work, into);
         self.count(&iterated, asked);

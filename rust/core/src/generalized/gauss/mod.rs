@@ -6,6 +6,7 @@
 //! by what will push it ([`rest`]), and rounding by nothing ([`rounding`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
 //! alone.
 
+mod changes;
 mod columns;
 mod eight;
 mod ending;
@@ -20,7 +21,10 @@ mod visited;
 
 use crate::numerics::lanes::{Lanes, WIDTH};
 pub use eight::GaussEight;
+use ending::Ending;
 pub use pace::Steps;
+use rounding::Rounding;
+use std::sync::OnceLock;
 pub use trial::GaussStep;
 
 /// A collocation method: row `j` of a matrix holds what stage `j` contributes to each of the stages.
@@ -51,16 +55,29 @@ pub struct Method {
     /// Its order.
     pub order: u32,
     table: &'static Table,
+    beyond: OnceLock<Beyond>,
+}
+
+/// What follows from a table alone, found when it is first asked for.
+#[derive(Debug)]
+struct Beyond {
+    ending: Ending,
+    rounding: Rounding,
 }
 
 /// The methods of this family.
 pub static METHODS: [Method; 3] = [
-    Method { name: "gauss4", order: 4, table: &tables::GAUSS4 },
-    Method { name: "gauss8", order: 8, table: &tables::GAUSS8 },
-    Method { name: "gauss16", order: 16, table: &tables::GAUSS16 },
+    Method { name: "gauss4", order: 4, table: &tables::GAUSS4, beyond: OnceLock::new() },
+    Method { name: "gauss8", order: 8, table: &tables::GAUSS8, beyond: OnceLock::new() },
+    Method { name: "gauss16", order: 16, table: &tables::GAUSS16, beyond: OnceLock::new() },
 ];
 
 impl Method {
+    fn beyond(&'static self) -> &'static Beyond {
+        let found = || Beyond { ending: Ending::of(self.table), rounding: Rounding::of(self.table) };
+        self.beyond.get_or_init(found)
+    }
+
     /// Steps that are chosen for a relative tolerance, and held or not.
     pub fn chosen(&self, rtol: f64, held: bool) -> Steps {
         Steps::Chosen { tolerance: rtol, delta: self.table.delta(rtol), held }

@@ -6,10 +6,12 @@
 //! E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration* (2006), VIII.6.
 
 use super::Table;
+use super::changes::Changes;
+use super::columns::larger;
 use super::pace::FADING;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
-use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::state::State;
 use crate::ode::system::Form;
@@ -17,21 +19,15 @@ use crate::tiered;
 
 /// Iterations after which stages are given up.
 pub(super) const MOST_ITERATIONS: u32 = 60;
-/// Below this, in units of how much a step changes a number, changes that no longer fall are round-off.
-const ROUND_OFF: f64 = 1e-13;
-/// As above, where the right-hand side itself has lost digits.
-const STAGNATION: f64 = 1e-9;
 /// Where a size turns out to be less than this part of what it seemed by the rates that stages began with, they are found again.
 pub(super) const WILD: f64 = 0.125;
 /// So many times at most.
 pub(super) const AGAIN: u32 = 3;
-/// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
-const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
 pub(super) const LEAST_SCALE: f64 = 1e-8;
 /// Nor below this where no more is to be told than rounding: rates that are found together, as by a solution of linear
 /// equations, are rounded by the largest of them, and what they give to what hardly moves beside it is noise.
-const ROUNDED_SCALE: f64 = 1e-4;
+pub(super) const ROUNDED_SCALE: f64 = 1e-4;
 
 /// What the stages of a step hold.
 #[derive(Clone, Debug)]
@@ -40,8 +36,10 @@ pub(super) struct Stages {
     pub(super) rates: Vec<Lanes>,
     /// Where they began.
     pub(super) guess: Vec<Lanes>,
-    /// The numbers that are iterated (velocities, of the second order).
-    numbers: Vec<Lanes>,
+    /// Where the stages of the second order would be without accelerations, from the coordinates.
+    drifts: Vec<Lanes>,
+    /// Of each number the largest rate of a step, and the farthest that rates are from where they began.
+    pub(super) told: Vec<(f64, f64)>,
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
     /// How large numbers were and how far they went, lately.
@@ -58,7 +56,8 @@ impl Stages {
         Self {
             rates: row.clone(),
             guess: row.clone(),
-            numbers: row,
+            drifts: row,
+            told: vec![(0.0, 0.0); evaluated],
             scales: vec![0.0; evaluated],
             sizes: vec![0.0; evaluated],
             tried: vec![0.0; evaluated],
@@ -69,15 +68,6 @@ impl Stages {
     /// The most that anything is measured by, inverted, where rounding is not to count.
     pub(super) fn limit(&self) -> f64 {
         limit(self.scales.iter().copied())
-    }
-
-    /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep
-    /// wall, and beside those anything has converged.
-    fn began_wildly(&self, y: &[f64], h: f64, fading: f64) -> bool {
-        let mut sizes = self.tried.iter().zip(&self.sizes).zip(&self.least).zip(&self.rates).zip(y);
-        sizes.any(|((((&tried, &known), &least), rates), &y)| {
-            size(y, rates, h, Real::max(fading * known, least)) < WILD * tried
-        })
     }
 
     /// Remembers how large numbers were in the step that was tried. One that was not kept leaves what it met beside what was
@@ -103,56 +93,12 @@ pub(super) struct Iterated {
     pub(super) evaluations: u32,
 }
 
-/// How stages changed, iteration after iteration.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Changes {
-    last: f64,
-    least: f64,
-    in_vain: u32,
-    /// The most that a change is measured by, inverted.
-    pub(super) limit: f64,
-}
-
-impl Default for Changes {
-    fn default() -> Self {
-        Self { last: f64::INFINITY, least: f64::INFINITY, in_vain: 0, limit: f64::INFINITY }
-    }
-}
-
-impl Changes {
-    /// Whether the stages have converged, or never will; nothing while that is open. Where changes no longer fall that may be
-    /// rounding, they are measured by the `limit` from there on.
-    #[inline(always)]
-    pub(super) fn judged(
-        &mut self,
-        iteration: u32,
-        change: f64,
-        limit: impl FnOnce() -> f64,
-    ) -> Option<bool> {
-        // The first change is from the numbers of another step, and tells nothing.
-        if iteration == 0 {
-            return None;
-        }
-        let stands = change >= self.last;
-        self.in_vain = if change < self.least { 0 } else { self.in_vain + 1 };
-        self.least = if change < self.least { change } else { self.least };
-        self.last = change;
-        let for_long = self.in_vain == NO_LONGER_FALLING;
-        if change == 0.0 || (stands && change < ROUND_OFF) || (for_long && change < STAGNATION) {
-            return Some(true);
-        }
-        if for_long && change < STAGNATION * (ROUNDED_SCALE / LEAST_SCALE) && self.limit == f64::INFINITY {
-            *self = Self { limit: limit(), ..Self::default() };
-            return None;
-        }
-        (!change.is_finite() || for_long).then_some(false)
-    }
-}
-
 /// A step on its way.
 pub(super) struct Work<'a> {
     pub(super) table: &'static Table,
     pub(super) form: Form,
+    /// Whether accelerations look at velocities.
+    pub(super) velocity: bool,
     pub(super) machine: &'a mut Machine<Lanes>,
     pub(super) state: &'a State<f64>,
     pub(super) stages: &'a mut Stages,
@@ -178,26 +124,33 @@ pub(super) fn combined<V: Vector8>(weights: &[Lanes; WIDTH], values: &Lanes) -> 
 /// of a NaN beyond all.
 #[inline(always)]
 pub(super) fn largest(lanes: Lanes) -> f64 {
-    let [a, b, c, d, e, f, g, h] = lanes.0.map(f64::to_bits);
-    let largest = f64::from_bits(a.max(e).max(c.max(g)).max(b.max(f).max(d.max(h))));
+    let [a, b, c, d, e, f, g, h] = lanes.0;
+    let larger = |x: f64, y: f64| f64::from_bits(x.to_bits().max(y.to_bits()));
+    let largest = larger(larger(larger(a, e), larger(c, g)), larger(larger(b, f), larger(d, h)));
     if largest.is_nan() { f64::INFINITY } else { largest }
 }
 
 /// How large a number is, or was before, and how far it goes in the step.
 #[inline(always)]
-fn size(y: f64, rates: &Lanes, h: f64, before: f64) -> f64 {
-    let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
+fn size<V: Vector8>(y: f64, rates: &Lanes, h: f64, before: f64) -> f64 {
+    let now = y.abs() + (h * largest(V::load(*rates).abs().store())).abs();
     // What overflows in a step that is too long is no size.
     if now > before && now < f64::INFINITY { now } else { before }
 }
 
 /// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
-fn set_scales(stages: &mut Stages, y: &[f64], h: f64, fading: f64) {
+fn set_scales<V: Vector8>(
+    stages: &mut Stages,
+    (rates, outputs): (&[Lanes], &[u16]),
+    y: &[f64],
+    h: f64,
+    fading: f64,
+) {
     let mut most = 0.0;
     let sizes = stages.tried.iter_mut().zip(&stages.sizes).zip(&stages.least);
-    for ((((tried, known), least), rates), y) in sizes.zip(&stages.rates).zip(y) {
-        *tried = size(*y, rates, h, Real::max(fading * *known, *least));
+    for ((((tried, known), least), &output), y) in sizes.zip(outputs).zip(y) {
+        *tried = size::<V>(*y, &rates[usize::from(output)], h, Real::max(fading * *known, *least));
         most = if *tried > most { *tried } else { most };
     }
     for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
@@ -209,65 +162,112 @@ fn set_scales(stages: &mut Stages, y: &[f64], h: f64, fading: f64) {
 /// Iterates the stages from `stages.rates` on until nothing changes.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
-    let Work { table, form, machine, state, stages, t, h, fading } = work;
+    let Work { table, form, velocity, machine, state, stages, t, h, fading } = work;
     let (code, registers) = machine.parts();
     let outputs = code.output_registers();
     let evaluated = form.evaluated();
     let second_order = matches!(form, Form::SecondOrder(_));
     let (y, rest) = state.all();
+    let (length, all_move) = (h.abs(), !second_order || *velocity);
     let (h, h2) = (V::splat(*h), V::splat(*h * *h));
     let passed = V::load(table.c) * h;
     // Rounded alone, the way to a stage would err alike in every step, and the energy drift with their number.
     let passed_rest = V::load(table.c_rest).multiply_add(h, V::load(table.c).multiply_add(h, -passed));
     registers[code.variables()] = (passed + V::splat(*t)).store();
+    if second_order {
+        for (i, drift) in stages.drifts.iter_mut().enumerate() {
+            let v = V::splat(y[evaluated + i]);
+            *drift = passed.multiply_add(v, passed_rest.multiply_add(v, V::splat(rest[i]))).store();
+        }
+    }
+    // What is read where the code has left it is there sooner than a copy of it, if no state is written there.
+    let stay = outputs.iter().all(|&output| usize::from(output) > code.variables());
     let mut changes = Changes::default();
-    for iteration in 0..MOST_ITERATIONS {
-        let mut change = V::zero();
+    for iteration in 1..=MOST_ITERATIONS {
         for i in 0..evaluated {
+            let found = iteration > 1 && stay;
+            let rates = if found { &registers[usize::from(outputs[i])] } else { &stages.rates[i] };
+            let mut moved = V::zero();
             let from = if second_order { evaluated + i } else { i };
-            let rates = &stages.rates[i];
-            let number =
-                combined::<V>(&table.a, rates).multiply_add(h, V::splat(rest[from])) + V::splat(y[from]);
-            let scale = Real::min(stages.scales[i], changes.limit);
-            change = change.max((number - V::load(stages.numbers[i])).abs() * V::splat(scale));
-            stages.numbers[i] = number.store();
-            registers[from] = number.store();
+            if all_move {
+                let sum = combined::<V>(&table.a, rates);
+                moved = sum.multiply_add(h, V::splat(rest[from])) + V::splat(y[from]);
+            }
             if second_order {
-                let v = V::splat(y[from]);
-                let drift = passed.multiply_add(v, passed_rest.multiply_add(v, V::splat(rest[i])));
-                let place = combined::<V>(&table.a2, rates).multiply_add(h2, drift) + V::splat(y[i]);
+                let sum = combined::<V>(&table.a2, rates);
+                let place = sum.multiply_add(h2, V::load(stages.drifts[i])) + V::splat(y[i]);
                 registers[i] = place.store();
             }
-        }
-        let change = largest(change.store());
-        if let Some(converged) = changes.judged(iteration, change, || stages.limit()) {
-            return Iterated { converged, evaluations: iteration };
+            if all_move {
+                registers[from] = moved.store();
+            }
         }
         execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
-        for i in 0..evaluated {
-            stages.rates[i] = registers[usize::from(outputs[i])];
+        if iteration == 1 {
+            set_scales::<V>(stages, (registers, outputs), form.measured(y), work.h, *fading);
         }
-        if iteration == 0 {
-            set_scales(stages, if second_order { &y[evaluated..] } else { y }, work.h, *fading);
+        let mut change = V::zero();
+        let own = own_lanes(table.stages);
+        for ((rates, &scale), &output) in stages.rates.iter_mut().zip(&stages.scales).zip(outputs) {
+            let found = V::load(registers[usize::from(output)]);
+            let scale = V::splat(Real::min(scale, changes.limit) * length);
+            let moved = V::select(own, (found - V::load(*rates)).abs(), V::zero());
+            change = larger(moved * scale, change);
+            *rates = found.store();
+        }
+        let change = largest(change.store());
+        if let Some(converged) = changes.judged(change, || stages.limit()) {
+            return Iterated { converged, evaluations: iteration };
         }
     }
     Iterated { converged: false, evaluations: MOST_ITERATIONS }
 }
 
+/// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep wall,
+/// and beside those anything has converged.
+#[inline(always)]
+fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> bool {
+    let Work { form, state, stages, h, fading, .. } = work;
+    let y = form.measured(state.all().0);
+    let sizes = stages.tried.iter().zip(&stages.sizes).zip(&stages.least);
+    for ((((&tried, &known), &least), rates), &y) in sizes.zip(&stages.rates).zip(y) {
+        if size::<V>(y, rates, *h, Real::max(*fading * known, least)) < WILD * tried {
+            return true;
+        }
+    }
+    false
+}
+
 /// Finds the stages from `stages.rates` on, measured by what they come to.
 pub(super) fn found(work: &mut Work<'_>) -> Iterated {
     let mut all = iterate(work);
-    let y = work.form.measured(work.state.all().0);
-    let wild = |work: &Work<'_>| work.stages.began_wildly(y, work.h, work.fading);
     for _ in 0..AGAIN {
-        if !all.converged || !wild(work) {
+        if !all.converged || !began_wildly(work) {
             return all;
         }
         let again = iterate(work);
         all = Iterated { converged: again.converged, evaluations: all.evaluations + again.evaluations };
     }
-    all.converged &= !wild(work);
+    all.converged &= !began_wildly(work);
     all
+}
+
+/// The lanes of so many stages.
+#[inline(always)]
+fn own_lanes(stages: usize) -> Bits {
+    Bits(u8::MAX >> (WIDTH - stages))
+}
+
+/// Sets what the stages, so many of the lanes, tell of each number.
+#[inline(always)]
+fn told_body<V: Vector8>(stages: &mut Stages, count: usize) {
+    let own = own_lanes(count);
+    for ((told, &rates), &guess) in stages.told.iter_mut().zip(&stages.rates).zip(&stages.guess) {
+        let (rates, guess) = (V::load(rates), V::load(guess));
+        let most = V::select(own, rates.abs(), V::zero()).store();
+        let astray = V::select(own, (rates - guess).abs(), V::zero()).store();
+        *told = (largest(most), largest(astray));
+    }
 }
 
 /// The weighted sum of the stages.
@@ -324,6 +324,8 @@ fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lan
 
 tiered! {
     fn iterate[][](work: &mut Work<'_>) -> Iterated = iterate_body;
+    fn began_wildly[][](work: &Work<'_>) -> bool = began_wildly_body;
+    pub(super) fn told[][](stages: &mut Stages, count: usize) -> () = told_body;
     pub(super) fn advance[][](work: &Work<'_>, next: &mut State<f64>) -> () = advance_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lanes]) -> () = led_body;
 }

@@ -4,12 +4,11 @@
 //! The one idea: whatever is decided of a step, its [`Pace`] decides, which eight trajectories side by side
 //! ([`eight`](super::eight)) have, too.
 
-use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
-use super::rounding::{HARDLY, Rounding};
-use super::step::{Iterated, Stages, Work, advance, found, largest, led};
-use super::{Method, Table};
+use super::rounding::HARDLY;
+use super::step::{Iterated, Stages, Work, advance, found, largest, led, told};
+use super::{Beyond, Method, Table};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -37,9 +36,10 @@ fn greatest(stages: usize, of: impl Fn(usize) -> f64) -> f64 {
 /// A collocation method at work on one trajectory.
 pub struct GaussStep {
     table: &'static Table,
-    ending: Ending,
-    rounding: Rounding,
+    beyond: &'static Beyond,
     form: Form,
+    /// Whether accelerations look at velocities.
+    velocity: bool,
     machine: Machine<Lanes>,
     stages: Stages,
     /// Rates of the last kept step, and its length.
@@ -67,7 +67,7 @@ impl GaussStep {
     /// At work on states like `state`; `evaluate` gives the rates of the first order, the accelerations of the second.
     pub fn new(
         method: &'static Method,
-        (machine, form): (Machine<Lanes>, Form),
+        (machine, form, velocity): (Machine<Lanes>, Form, bool),
         state: &State<f64>,
         (steps, max_step): (Steps, f64),
         t0: f64,
@@ -75,9 +75,9 @@ impl GaussStep {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
-            ending: Ending::of(method.table),
-            rounding: Rounding::of(method.table),
+            beyond: method.beyond(),
             form,
+            velocity,
             machine,
             stages: Stages::new(evaluated),
             before: vec![Lanes([0.0; WIDTH]); evaluated],
@@ -116,12 +116,14 @@ impl GaussStep {
     }
 
     fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> Iterated {
-        let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.stages);
         let fading = self.pace.fading(self.length, h);
-        let mut work = Work { table, form, machine, state, stages, t, h, fading };
+        let Self { table, form, velocity, machine, stages, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading };
         let iterated = found(&mut work);
         if iterated.converged {
             advance(&work, &mut self.next);
+            told(stages, table.stages);
         }
         self.evaluations += u64::from(iterated.evaluations);
         iterated
@@ -130,21 +132,16 @@ impl GaussStep {
     /// How far the polynomial of the step before leads astray; in the first step, how much its last term adds. What rounding
     /// explains is nothing.
     fn smoothness(&self, h: f64) -> f64 {
-        let stages = self.table.stages;
-        let rates = self.stages.rates.iter();
-        let largest_rate = rates.fold(0.0, |most, rates| Real::max(greatest(stages, |k| rates.0[k]), most));
-        let rounding = self.rounding.astray(self.table, self.pace.kept, (self.length, h)) * largest_rate;
+        let largest_rate = self.stages.told.iter().fold(0.0, |most, told| Real::max(told.0, most));
+        let rounding =
+            self.beyond.rounding.astray(self.table, self.pace.kept, (self.length, h)) * largest_rate;
         let mut most = 0.0;
-        for (i, rates) in self.stages.rates.iter().enumerate() {
-            let guess = &self.stages.guess[i];
-            let astray = if self.pace.kept == 0 {
-                self.table.leading(|k| rates.0[k])
-            } else {
-                greatest(stages, |k| rates.0[k] - guess.0[k])
-            };
-            let hardly_moves = greatest(stages, |k| rates.0[k]) <= HARDLY * largest_rate;
+        let Stages { told, rates, scales, .. } = &self.stages;
+        for ((&(largest, astray), rates), scale) in told.iter().zip(rates).zip(scales) {
+            let astray = if self.pace.kept == 0 { self.table.leading(|k| rates.0[k]) } else { astray };
+            let hardly_moves = largest <= HARDLY * largest_rate;
             let astray = if hardly_moves && astray <= rounding { 0.0 } else { astray };
-            let delta = astray * h.abs() * self.stages.scales[i];
+            let delta = astray * h.abs() * scale;
             most = if delta > most { delta } else { most };
         }
         most
@@ -155,9 +152,11 @@ impl GaussStep {
     fn felt(&self, h: f64) -> f64 {
         let second_order = matches!(self.form, Form::SecondOrder(_));
         let mut most = 0.0;
-        for (rates, scale) in self.stages.rates.iter().zip(&self.stages.scales) {
-            let beside = if second_order { 0.0 } else { rates.0[0] };
-            let felt = greatest(self.table.stages, |k| rates.0[k] - beside) * h.abs() * scale;
+        let Stages { told, rates, scales, .. } = &self.stages;
+        for ((&(largest, _), rates), scale) in told.iter().zip(rates).zip(scales) {
+            let beside = |k: usize| rates.0[k] - rates.0[0];
+            let change = if second_order { largest } else { greatest(self.table.stages, beside) };
+            let felt = change * h.abs() * scale;
             most = if felt <= most { most } else { felt };
         }
         if second_order { most } else { most.sqrt() }
@@ -206,7 +205,7 @@ impl GaussStep {
     /// By how much the rates at the end of the step, and at the beginning of the first, are not those that the stages lead to,
     /// as a part of a size.
     fn missed(&mut self, t: f64, h: f64) -> f64 {
-        led(&self.ending.weights, &self.stages.rates, &mut self.led);
+        led(&self.beyond.ending.weights, &self.stages.rates, &mut self.led);
         let end = self.next.all().0;
         for (register, &y) in self.machine.state().iter_mut().zip(end) {
             *register = Lanes([y; WIDTH]);
@@ -223,7 +222,7 @@ impl GaussStep {
         if self.pace.kept > 0 {
             return most;
         }
-        led(&self.ending.first, &self.stages.rates, &mut self.led);
+        led(&self.beyond.ending.first, &self.stages.rates, &mut self.led);
         for (i, (led, begin)) in self.led.iter().zip(&self.begin).enumerate() {
             let missed = (begin - led.0[0]).abs() * h.abs() * scale(&self.stages, i);
             most = if missed <= most { most } else { missed };
@@ -287,7 +286,7 @@ impl Trial<f64> for GaussStep {
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }
-        let astray = self.pace.refuses(self.steps, &self.ending);
+        let astray = self.pace.refuses(self.steps, &self.beyond.ending);
         let seen = if astray { 1.0 } else { self.seen_until(system, state, (clock.elapsed, h))? };
         let (refused, rule) = (astray || seen < 1.0, Rule::new(1, f64::INFINITY));
         if iterated.converged && (!refused || self.pace.kept == 0) {
@@ -325,9 +324,10 @@ impl Trial<f64> for GaussStep {
         led(&rows, &self.stages.rates, &mut self.shadow.rates);
         // Measured by what the step itself is: no reading knows of another.
         self.shadow.sizes.copy_from_slice(&self.stages.tried);
-        let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
-        let mut work = Work { table, form, machine, state, stages, t, h, fading: 1.0 };
+        let Self { table, form, velocity, machine, shadow: stages, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading: 1.0 };
         let iterated = found(&mut work);
         advance(&work, into);
         self.evaluations += u64::from(iterated.evaluations);
@@ -339,7 +339,7 @@ impl Trial<f64> for GaussStep {
 
     fn keep(&mut self, accepted: bool, state: &mut State<f64>) {
         if accepted {
-            state.copy_from(&self.next);
+            core::mem::swap(state, &mut self.next);
             core::mem::swap(&mut self.before, &mut self.stages.rates);
             self.length = self.length_tried;
             self.pace.kept += 1;

@@ -6,4 +6,5 @@ pub mod multistep;
 pub mod rates;
 pub mod series;
 pub mod stages;
+pub mod step_by_series;
 pub mod updates;

@@ -1,0 +1,158 @@
+//! A step by Taylor series: its choice, and what is found at its end.
+//!
+//! The one idea: what is done once for a step, number by number of time, is one loop's worth of registers; as operations on lanes
+//! in memory, each would cost as much as a coefficient.
+
+use super::errors::HUGE;
+use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::step_control::Clock;
+
+/// Of a step of so many units of time the last coefficients may be too small for all their digits, and for a step that other
+/// units of the scene leave as it is: the motion is expanded once more, in a unit longer by this.
+pub(in crate::ode) const FAR: f64 = 4_294_967_296.0; // 2^32
+
+/// The choice of a step.
+#[derive(Debug)]
+pub(in crate::ode) struct Choice<'a, S: Real> {
+    /// One over the step that the coefficients allow, in their unit of time: infinite if they are no numbers.
+    pub(in crate::ode) inverse: &'a S,
+    /// That unit, and the shortest that there is.
+    pub(in crate::ode) units: [&'a S; 2],
+    /// The share of that step that is taken.
+    pub(in crate::ode) margin: f64,
+    /// What the step is not to be longer than.
+    pub(in crate::ode) longest: [&'a S; 3],
+    /// The step there is set in those that run.
+    pub(in crate::ode) clock: &'a mut Clock<S>,
+    /// Those that do.
+    pub(in crate::ode) running: S::Mask,
+    /// The shortest unit that was too long for this step.
+    pub(in crate::ode) too_long: &'a mut S,
+    /// The step without its sign, the one that is tried, and the time at its end.
+    pub(in crate::ode) into: [&'a mut S; 3],
+}
+
+/// What is told of a step that was chosen.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::ode) struct Chosen<M> {
+    /// The coefficients are numbers.
+    pub(in crate::ode) sound: M,
+    /// They are to be found once more, in a longer unit.
+    pub(in crate::ode) again: M,
+}
+
+impl<S: Element> Pass<S> for Choice<'_, S> {
+    type Output = Chosen<S::Mask>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Chosen<S::Mask> {
+        let (inverse, [unit, least]) =
+            (V::load(*self.inverse), [V::load(*self.units[0]), V::load(*self.units[1])]);
+        let mut clock = self.clock.load::<V>();
+        let running = V::mask(self.running);
+        let zero = V::zero();
+        let sound = inverse.less(V::splat(HUGE));
+        // The unit of time may be to blame; of the shortest there is, it is not.
+        let shorter = V::select(least.less(unit), unit, zero);
+        let step = V::select(sound, V::splat(self.margin) * unit / inverse, shorter);
+        // What nothing limits goes to the end.
+        let span = (clock.end - clock.elapsed).abs();
+        let [smooth, bound, longest] = self.longest;
+        let longest = V::load(*smooth).min(V::load(*longest).min(V::load(*bound)));
+        let step = step.min(longest).min(span + span);
+        let signed = V::select(clock.end.less(clock.elapsed), -step, step);
+        clock.h = V::select(running, signed, clock.h);
+        let (h, _) = clock.next_step(running);
+        let too_long = V::select(sound.or(running.not()), V::load(*self.too_long), unit);
+        let again = (V::splat(FAR) * unit).less(step.min(too_long)).and(sound);
+        self.clock.h = clock.h.store();
+        *self.too_long = too_long.store();
+        let [of_step, of_h, of_end] = self.into;
+        (*of_step, *of_h, *of_end) = (step.store(), h.store(), (clock.elapsed + h).store());
+        Chosen { sound: V::mask_in_memory(sound), again: V::mask_in_memory(again) }
+    }
+}
+
+/// By how much the rates at the end of a step are not those of the polynomial that led there.
+#[derive(Debug)]
+pub(in crate::ode) struct Missed<'a, S> {
+    /// The rates that were found; afterwards what they differ by, in the unit of time of the coefficients.
+    pub(in crate::ode) rates: &'a mut [S],
+    /// Blocks of coefficients of what they are the rates of, from order 0 on.
+    pub(in crate::ode) blocks: &'a [S],
+    /// The highest order.
+    pub(in crate::ode) highest: usize,
+    /// The step, and that unit.
+    pub(in crate::ode) times: [&'a S; 2],
+    /// Whether they are accelerations.
+    pub(in crate::ode) second_order: bool,
+}
+
+/// Σ n bₙ xⁿ⁻¹ of one number's coefficients up to an order, and the largest |cₙ xⁿ| of others.
+#[inline(always)]
+fn slope_and_reach<V: Real>(b: &[V], c: &[V], (len, number): (usize, usize), highest: usize, x: V) -> (V, V) {
+    let (mut slope, mut reach, mut power) = (V::zero(), V::zero(), V::one());
+    let mut place = len + number;
+    for n in 1..=highest {
+        slope = (V::splat(n as f64) * b[place]).multiply_add(power, slope);
+        power = power * x;
+        reach = (c[place] * power).abs().max(reach);
+        place += len;
+    }
+    (slope, reach)
+}
+
+impl<S: Element> Pass<S> for Missed<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let (rates, blocks) = (V::view_mut(self.rates), V::view(self.blocks));
+        let (unit, len) = (V::load(*self.times[1]), rates.len());
+        let x = V::load(*self.times[0]) / unit;
+        // What a rate moves a number by in the unit of time.
+        let moves = if self.second_order { unit * unit } else { unit };
+        for (number, rate) in rates.iter_mut().enumerate() {
+            let (slope, _) = slope_and_reach(blocks, blocks, (len, number), self.highest, x);
+            *rate = *rate * moves - slope;
+        }
+    }
+}
+
+/// Where numbers that miss by more than so many tolerances of how far they go in a step lead astray in it.
+#[derive(Debug)]
+pub(in crate::ode) struct OwnMissed<'a, S> {
+    /// What they miss.
+    pub(in crate::ode) missed: Missed<'a, S>,
+    /// Blocks of coefficients, from order 0 on.
+    pub(in crate::ode) blocks: &'a [S],
+    /// The tolerance, the least that it is taken for, and how many there may be.
+    pub(in crate::ode) tolerance: &'a S,
+    pub(in crate::ode) least: f64,
+    pub(in crate::ode) most: f64,
+}
+
+impl<S: Element> Pass<S> for OwnMissed<'_, S> {
+    type Output = S::Mask;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S::Mask {
+        let Missed { rates, blocks, highest, times, second_order } = self.missed;
+        let (rates, of_rates, blocks) = (V::view(rates), V::view(blocks), V::view(self.blocks));
+        let (unit, len) = (V::load(*times[1]), rates.len());
+        let x = V::load(*times[0]) / unit;
+        let moves = if second_order { unit * unit } else { unit };
+        let tolerance = V::load(*self.tolerance).max(V::splat(self.least));
+        let in_a_step = (x * x).max(V::one());
+        let mut most = V::zero();
+        for (number, &rate) in rates.iter().enumerate() {
+            let (slope, goes) = slope_and_reach(of_rates, blocks, (len, number), highest, x);
+            let missed = rate * moves - slope;
+            let missed = missed.abs() * in_a_step;
+            let nothing = missed.less_equal(V::zero());
+            let ratio = V::select(nothing, V::zero(), missed / (tolerance * goes));
+            let square = ratio * ratio;
+            let sound = square.less(V::splat(HUGE));
+            most = V::select(sound, square, V::splat(f64::INFINITY)).max(most);
+        }
+        V::mask_in_memory(most.less_equal(V::splat(self.most * self.most)).not())
+    }
+}
