@@ -77,12 +77,12 @@ def test_copies_have_the_bits_they_have_alone(method: str, massless: int, planar
     mass = bodies.mass * grow[:, None]
     mass[4, 0] = 0.0
     own = {"position": bodies.position * grow[::-1, None, None], "mass": mass}
-    flattening = [vv.Oblate(0, G=1.0, J2=0.02 * s, radius=0.3, axis=[0, 0, 1.0]) for s in grow]
-    relativity = [vv.PostNewtonian([0, 1], G=1.0, c=20.0 * s) for s in grow]
-    alike = (vv.Gravity(1.0), UPRIGHT, CURVED)
-    for sets in ([alike] * 12, [(vv.Gravity(1.0), *two) for two in zip(flattening, relativity, strict=True)]):
-        scene = vv.Scene(bodies, *sets[0])
-        given = {} if sets[0] is alike else {"forces": sets}
+    scene = vv.Scene(bodies, vv.Gravity(1.0), UPRIGHT, vv.PostNewtonian([0, 1], G=1.0, c=20.0))
+    flattening = [vv.Oblate(0, G=1.0, J2=0.02 * s, radius=0.3, axis=[0, 0, 2.0]) for s in grow]
+    relativity = [vv.PostNewtonian([0, 1], G=s, c=20.0) for s in grow]
+    others = [(scene.forces[0], *two) for two in zip(flattening, relativity, strict=True)]
+    parameters = {1: {"J2": 0.02 * grow}, 2: {"G": grow}}
+    for given, sets in (({}, [scene.forces] * 12), ({"parameters": parameters}, others)):
         runs = [scene.ensemble(**own, **given).run(t=[0.4, 2.0], method=method, threads=n) for n in (1, 3)]
         for member, forces in enumerate(sets):
             own_bodies = vv.Particles(mass[member], own["position"][member], bodies.velocity)
@@ -150,8 +150,9 @@ def test_satellites_of_a_flat_planet_precess(method: str) -> None:
 @pytest.mark.parametrize("method", ["dop853", "verner98", "taylor"])
 @pytest.mark.parametrize("drift", [0.0, 3.0])
 def test_pericenters_of_massless_bodies_advance(method: str, drift: float) -> None:
-    """6πGM/(c² a (1 − e²)) a turn, to the order 1/c⁴ that the field leaves out; also about a star that moves."""
-    c, eccentric = 200.0, np.array([0.2, 0.4, 0.6])
+    """6πGM/(c² a (1 − e²)) a turn, also about a star that moves. Means over turns of 2π, which is not quite the period,
+    are off by a part in c²/80, 2e-5."""
+    c, eccentric = 2000.0, np.array([0.2, 0.4, 0.6])
     zero = np.zeros_like(eccentric)
     speed = ((1.0 + eccentric) / (1.0 - eccentric)) ** 0.5
     bodies = vv.Particles(
@@ -168,7 +169,7 @@ def test_pericenters_of_massless_bodies_advance(method: str, drift: float) -> No
     angle = np.unwrap(np.arctan2(lenz[..., 1], lenz[..., 0]), axis=0)
     each = (angle[-40:].mean(axis=0) - angle[1:41].mean(axis=0)) / (turns - 1)
     expected = 6.0 * np.pi / (c**2 * (1.0 - eccentric**2))
-    np.testing.assert_allclose(each, expected, rtol=30.0 / c**2 + 1e-3, atol=0.0)
+    np.testing.assert_allclose(each, expected, rtol=1e-4, atol=0.0)
 
 
 @pytest.mark.parametrize("method", ["dop853", "taylor"])
@@ -177,14 +178,20 @@ def test_events_of_followers(method: str, forces: tuple[vv.Force, ...]) -> None:
     """Events leave every bit, and are found where outputs at their times are: within twice the tolerance of a step."""
     bodies = system(3, 20)
     scene, how = vv.Scene(bodies, *forces), {"method": method, "rtol": 1e-10}
+    plain = scene.run(t=[0.0, 6.0], **how)
+    # Half of the way, and of what a distance changes by: passed for sure.
+    start, end = plain.position
+    apart = [np.linalg.norm(place[1] - place[5]) for place in (start, end)]
     asked = [
-        vv.events.distance(1, 5, below=4.0, direction=0),
-        vv.events.plane([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], body=7),
+        vv.events.distance(1, 5, below=sum(apart) / 2, direction=0),
+        vv.events.plane((start[7] + end[7]) / 2, end[7] - start[7], body=7),
     ]
     watched = scene.run(t=[0.0, 6.0], events=asked, **how)
-    plain = scene.run(t=[0.0, 6.0], **how)
     np.testing.assert_array_equal(watched.position, plain.position)
-    assert len(watched.events.t) > 0
+    assert len(watched.events.t) >= 2
     there = scene.run(t=np.concatenate([[0.0], np.unique(watched.events.t), [6.0]]), **how)
     order = np.argsort(watched.events.t)
-    np.testing.assert_allclose(there.position[1:-1], watched.events.position[order], rtol=0.0, atol=1e-7)
+    found, looked_at = watched.events.position[order], watched.events.which[order]
+    for place, at, event in zip(there.position[1:-1], found, looked_at, strict=True):
+        bodies_of = [1, 5] if event == 0 else [7]
+        np.testing.assert_allclose(place[bodies_of], at[bodies_of], rtol=0.0, atol=1e-7)
