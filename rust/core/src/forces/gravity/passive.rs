@@ -3,7 +3,7 @@
 use super::newton::CONSTANT;
 use super::pair::squared_distance;
 use super::series::passive::{self, PullSeries};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::following::{Following, Leaders, Massive, MassiveSeries};
 use crate::numerics::element::{Element, Pass, View};
@@ -76,7 +76,8 @@ pub(super) struct Leading {
     strength: Vec<Lanes>,
     /// The softening length, squared.
     softening2: f64,
-    series: PullSeries,
+    /// Much room, of a method that asks for it.
+    series: Option<PullSeries>,
 }
 
 impl Leading {
@@ -87,7 +88,7 @@ impl Leading {
         Self {
             strength: vec![Lanes::zero(); massive],
             softening2,
-            series: PullSeries::new(massive, leaders.components, softening2),
+            series: leaders.expands.then(|| PullSeries::new(massive, leaders.components, softening2)),
         }
     }
 }
@@ -112,8 +113,10 @@ impl Following for Leading {
         a: &mut [Lanes],
         first: bool,
     ) -> Result<()> {
-        let massive = passive::Massive { strength: &self.strength, places, rests };
-        self.series.coefficient(massive, of, a, first);
+        let Some(series) = &mut self.series else {
+            return Err(Error::Internal("gravity without its series".to_owned()));
+        };
+        series.coefficient(passive::Massive { strength: &self.strength, places, rests }, of, a, first);
         Ok(())
     }
 }
