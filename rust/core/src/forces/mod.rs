@@ -16,6 +16,7 @@ pub mod damper;
 pub mod drag;
 pub mod driven_force;
 pub mod expression;
+pub mod following;
 pub mod gravity;
 pub mod harmonic;
 mod limits;

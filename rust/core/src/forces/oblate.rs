@@ -3,9 +3,10 @@
 use super::Force;
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
+use super::following::{Following, Leaders};
 use super::links::{check_counts, of_link};
 use super::series::Series;
-use super::sources::{Kernel, Law, Relative, Written, WrittenLaw};
+use super::sources::{Kernel, Law, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -107,14 +108,18 @@ impl Oblate {
         })
     }
 
-    fn sources(&self, context: &Context<'_>) -> Kernel<Flattening> {
+    fn law(&self, units: Units) -> Flattening {
         let harmonics = self.shapes.iter().map(|shape| {
-            let radius = context.units.take(shape.radius, [1, 0, 0]);
+            let radius = units.take(shape.radius, [1, 0, 0]);
             let square = radius * radius;
             [1.5 * shape.j2 * square, 0.625 * shape.j4 * square * square]
         });
-        let law = Flattening { axis: self.axis, harmonics: harmonics.collect() };
-        Kernel::new(law, &self.bodies, context.units.take(self.constant, CONSTANT), context)
+        Flattening { axis: self.axis, harmonics: harmonics.collect() }
+    }
+
+    fn sources(&self, context: &Context<'_>) -> Kernel<Flattening> {
+        let constant = context.units.take(self.constant, CONSTANT);
+        Kernel::new(self.law(context.units), &self.bodies, constant, context)
     }
 }
 
@@ -133,6 +138,10 @@ impl ForceTerm for Oblate {
     }
     fn has_series(&self) -> bool {
         true
+    }
+    fn following(&self, leaders: &Leaders<'_>) -> Option<Box<dyn Following>> {
+        let constant = leaders.units.take(self.constant, CONSTANT);
+        Some(following(self.law(leaders.units), &self.bodies, constant, leaders))
     }
     fn potential_and_virial(
         &self,

@@ -3,9 +3,10 @@
 use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
+use super::following::{Following, Leaders};
 use super::oblate::{CONSTANT, check_sources, sources_act};
 use super::series::Series;
-use super::sources::{Kernel, Law, Relative, Written, WrittenLaw};
+use super::sources::{Kernel, Law, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -15,6 +16,7 @@ use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::units::Units;
 use std::sync::Arc;
 
 /// What it declares about itself.
@@ -53,10 +55,14 @@ struct PostNewtonian {
 }
 
 impl PostNewtonian {
+    fn law(&self, units: Units) -> Schwarzschild {
+        let c = units.take(self.c, [1, 0, -1]);
+        Schwarzschild { inverse_square: 1.0 / c / c }
+    }
+
     fn sources(&self, context: &Context<'_>) -> Kernel<Schwarzschild> {
-        let c = context.units.take(self.c, [1, 0, -1]);
-        let law = Schwarzschild { inverse_square: 1.0 / c / c };
-        Kernel::new(law, &self.bodies, context.units.take(self.constant, CONSTANT), context)
+        let constant = context.units.take(self.constant, CONSTANT);
+        Kernel::new(self.law(context.units), &self.bodies, constant, context)
     }
 }
 
@@ -75,6 +81,10 @@ impl ForceTerm for PostNewtonian {
     }
     fn has_series(&self) -> bool {
         true
+    }
+    fn following(&self, leaders: &Leaders<'_>) -> Option<Box<dyn Following>> {
+        let constant = leaders.units.take(self.constant, CONSTANT);
+        Some(following(self.law(leaders.units), &self.bodies, constant, leaders))
     }
     fn potential_and_virial(
         &self,

@@ -8,8 +8,10 @@
 //! vector that is read soon after waits long for them.
 
 mod beside_gravity;
+mod following;
 mod series;
 
+pub(super) use following::following;
 pub(super) use series::{Written, WrittenLaw};
 
 use super::context::{Arrangement, Context, packed_place};

@@ -8,6 +8,7 @@ use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::driven_force::Drive;
+use super::following::{Following, Leaders};
 use super::series::Series;
 use super::uniform_magnetic_field::MagneticField;
 use crate::error::{Error, Result};
@@ -155,6 +156,12 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     /// Whether motions under it can be expanded in Taylor series.
     fn has_series(&self) -> bool {
         false
+    }
+
+    /// What massive bodies do by it to massless ones that move through their steps, of a force that couples all pairs; if
+    /// there is nothing of the kind, they are integrated together.
+    fn following(&self, _: &Leaders<'_>) -> Option<Box<dyn Following>> {
+        None
     }
 
     /// Its potential energy of these bodies, zero if it has none, and Σ r·F; the same on any number of threads.

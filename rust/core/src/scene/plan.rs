@@ -31,6 +31,7 @@ use super::request::{Checked, Request};
 use super::unit::Unit;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
+use crate::forces::following::Leaders;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
@@ -381,10 +382,8 @@ fn units(scene: &Scene, copy: usize, frame: Frame, groups: &Groups, span: f64) -
 
 /// Whether massless bodies feel the force along a path of the massive ones, or without them; listed pairs have mass.
 fn guides(force: &Arc<dyn ForceTerm>) -> bool {
-    match force.coupling() {
-        Coupling::None | Coupling::Listed(_) => true,
-        Coupling::AllPairs => force.as_newtonian().is_some(),
-    }
+    let nobody = Leaders { bodies: &[], components: 3, units: Units::default(), expands: false };
+    force.coupling() != Coupling::AllPairs || force.following(&nobody).is_some()
 }
 
 fn planar(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> bool {

@@ -1,10 +1,12 @@
 //! Newton's law between all pairs: what a scene describes.
 
+use super::passive::Leading;
 use super::{FewBodies, RING_MAX, Ring, Tiles, TwoRows, energy, series};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
 use crate::forces::context::{Arrangement, Context, System};
+use crate::forces::following::{Following, Leaders};
 use crate::forces::series::Series;
 use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::numerics::lanes::Lanes;
@@ -124,6 +126,10 @@ impl ForceTerm for Gravity {
 
     fn has_series(&self) -> bool {
         true
+    }
+
+    fn following(&self, leaders: &Leaders<'_>) -> Option<Box<dyn Following>> {
+        Some(Box::new(Leading::new(self.softening, leaders)))
     }
 
     fn potential_and_virial(

@@ -1,9 +1,17 @@
 //! Massless bodies in the field of massive ones: no third law, no pairs among themselves.
 
+use super::newton::CONSTANT;
 use super::pair::squared_distance;
-use crate::numerics::element::{Pass, View};
+use super::series::passive::{self, PullSeries};
+use crate::error::{Error, Result};
+use crate::forces::ForceTerm;
+use crate::forces::following::{Following, Leaders, Massive, MassiveSeries};
+use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::lanes::{Bits, Lanes, Vector8};
+use crate::numerics::real::Real;
+use crate::ode::series::Jet;
+use crate::units::Units;
 
 /// The acceleration at `position` from massive bodies at `places`, in their order; `strengths` are their `G·m`.
 ///
@@ -62,21 +70,71 @@ pub(super) fn packed_attraction<V: Vector8 + InverseCube, const PLANAR: bool, co
     a
 }
 
-/// The pull on one massless body in each lane of massive ones at given places: written into `a` if `first`, else added.
-#[derive(Debug)]
-pub struct Pull<'a> {
-    /// Where the massive bodies are, component after component.
-    pub places: &'a [Lanes],
+/// Massive bodies that massless ones follow.
+pub(super) struct Leading {
     /// Their `G·m`.
-    pub strength: &'a [Lanes],
+    strength: Vec<Lanes>,
     /// The softening length, squared.
-    pub softening2: f64,
+    softening2: f64,
+    /// Much room, of a method that asks for it.
+    series: Option<PullSeries>,
+}
+
+impl Leading {
+    /// With this softening length, in the scene's units.
+    pub(super) fn new(softening: f64, leaders: &Leaders<'_>) -> Self {
+        let softening = leaders.units.take(softening, [1, 0, 0]);
+        let (massive, softening2) = (leaders.bodies.len(), softening * softening);
+        Self {
+            strength: vec![Lanes::zero(); massive],
+            softening2,
+            series: leaders.expands.then(|| PullSeries::new(massive, leaders.components, softening2)),
+        }
+    }
+}
+
+impl Following for Leading {
+    fn lead(&mut self, own: &dyn ForceTerm, units: Units, mass: &[f64], lanes: Bits) {
+        let constant = own.as_newtonian().map_or(0.0, |(constant, _)| units.take(constant, CONSTANT));
+        for (strength, mass) in self.strength.iter_mut().zip(mass) {
+            *strength = Lanes::select(lanes, Lanes::splat(constant * mass), *strength);
+        }
+    }
+
+    fn apply(&mut self, massive: Massive<'_>, (q, _): (&[Lanes], &[Lanes]), a: &mut [Lanes], first: bool) {
+        let Self { strength, softening2, .. } = self;
+        Lanes::pass(Pull { places: massive.places, strength, softening2: *softening2, q, a, first });
+    }
+
+    fn coefficient(
+        &mut self,
+        MassiveSeries { places, rests }: MassiveSeries<'_>,
+        of: (usize, &Jet<Lanes>),
+        a: &mut [Lanes],
+        first: bool,
+    ) -> Result<()> {
+        let Some(series) = &mut self.series else {
+            return Err(Error::Internal("gravity without its series".to_owned()));
+        };
+        series.coefficient(passive::Massive { strength: &self.strength, places, rests }, of, a, first);
+        Ok(())
+    }
+}
+
+/// The pull on one massless body in each lane of massive ones at given places: written into `a` if `first`, else added.
+struct Pull<'a> {
+    /// Where the massive bodies are, component after component.
+    places: &'a [Lanes],
+    /// Their `G·m`.
+    strength: &'a [Lanes],
+    /// The softening length, squared.
+    softening2: f64,
     /// Where the massless bodies are, one number for each component.
-    pub q: &'a [Lanes],
+    q: &'a [Lanes],
     /// Their accelerations.
-    pub a: &'a mut [Lanes],
+    a: &'a mut [Lanes],
     /// Whether these are the first.
-    pub first: bool,
+    first: bool,
 }
 
 impl Pass<Lanes> for Pull<'_> {

@@ -33,21 +33,25 @@ pub(in super::super) trait WrittenLaw: Law {
     fn written(&self, source: usize, of: &Written, graph: &mut Graph) -> [Id; 3];
 }
 
+/// The recurrences of what a source does, with its gravitational parameter; nothing if the expression is too large.
+pub(super) fn recurrences<L: WrittenLaw>(law: &L, source: usize) -> Option<Arc<Recurrences>> {
+    let mut graph = Graph::default();
+    let mut variables = (0..VARIABLES).map(|index| graph.variable(index));
+    let of = Written {
+        d: [variables.next()?, variables.next()?, variables.next()?],
+        velocity: [variables.next()?, variables.next()?, variables.next()?],
+        strength: graph.parameter(0),
+    };
+    let outputs = law.written(source, &of, &mut graph).map(Output::Node);
+    Recurrences::new(&graph, (VARIABLES as usize, 1), &[], &outputs).ok().map(Arc::new)
+}
+
 impl<L: WrittenLaw> Kernel<L> {
     /// The same as series; nothing if the expression is too large.
     pub(in super::super) fn series(self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let mut pairs = Vec::new();
         for source in &self.sources {
-            let mut graph = Graph::default();
-            let mut variables = (0..VARIABLES).map(|index| graph.variable(index));
-            let of = Written {
-                d: [variables.next()?, variables.next()?, variables.next()?],
-                velocity: [variables.next()?, variables.next()?, variables.next()?],
-                strength: graph.parameter(0),
-            };
-            let outputs = self.law.written(source.index, &of, &mut graph).map(Output::Node);
-            let series = Recurrences::new(&graph, (VARIABLES as usize, 1), &[], &outputs).ok()?;
-            let series = Arc::new(series);
+            let series = recurrences(&self.law, source.index)?;
             let of_block = self.shape.rows / self.blocks.max(1);
             pairs.push(
                 (0..self.shape.rows)

@@ -313,7 +313,7 @@ impl<'a> Run<'a> {
             self.watch(&outcome, dense, ticker)?;
         }
         if let Some(followers) = self.followers.as_mut().filter(|_| guiding) {
-            let packed = self.layout == Layout::Packed;
+            let told = (self.layout == Layout::Packed, followers.moving);
             let span = Span {
                 lanes: outcome.accepted,
                 from: outcome.from,
@@ -324,7 +324,7 @@ impl<'a> Run<'a> {
                     (&*self.trial, &self.fractions),
                     &self.state,
                     outcome.h,
-                    packed,
+                    told,
                 )),
             };
             followers.through(&span, ticker)?;

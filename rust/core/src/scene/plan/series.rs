@@ -1,10 +1,10 @@
 //! What a method of Taylor series cannot take, told before anything runs, and which method `auto` takes.
 
 use super::coupling::Groups;
+use super::guides;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
-use crate::forces::term::Coupling;
 use crate::ode::{Method, Scheme};
 use crate::registry;
 use std::sync::Arc;
@@ -70,10 +70,14 @@ pub(super) fn check(
             "keeps the series of every pair of at most {MOST_BODIES} massive bodies, got {bodies}"
         ));
     }
-    let follow =
-        forces.iter().all(|force| force.coupling() != Coupling::AllPairs || force.as_newtonian().is_some());
-    if !active.is_empty() && !passive.is_empty() && !follow {
-        return refused("takes massless bodies only where gravity alone couples them to others".to_owned());
+    if active.is_empty() || passive.is_empty() {
+        return Ok(());
+    }
+    if let Some(force) = forces.iter().find(|force| !guides(force)) {
+        return refused(format!(
+            "takes no massless bodies beside {}, by which they do not follow the massive ones",
+            force.declaration().class_name
+        ));
     }
     Ok(())
 }

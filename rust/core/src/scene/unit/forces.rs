@@ -5,6 +5,7 @@ use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::gravity::newton::few_bodies;
 use crate::forces::monitor::InverseDistances;
 use crate::forces::series::Series;
+use crate::forces::term::Coupling;
 use crate::forces::{Dynamics, Force, ForceTerm};
 use crate::numerics::lanes::Lanes;
 use crate::ode::Scheme;
@@ -33,7 +34,8 @@ fn for_series<'a>(systems: &[System<'a>]) -> Vec<System<'a>> {
     systems.iter().map(|system| System { forces: &[], ..*system }).collect()
 }
 
-/// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of gravity.
+/// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of
+/// one that does.
 pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
     let systems = systems(plan, units);
     let mut context = Context {
@@ -49,9 +51,12 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
     let expands = matches!(plan.method.scheme, Scheme::Taylor(_));
     let alike = for_series(&systems);
     let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
+        if force.coupling() == Coupling::AllPairs {
+            return None;
+        }
         context.term = term;
         let series = if expands { force.series(&Context { systems: &alike, ..context }) } else { None };
-        force.as_newtonian().is_none().then(|| (force.kernel(&context), series))
+        Some((force.kernel(&context), series))
     };
     described(&systems).map(kernel).collect()
 }

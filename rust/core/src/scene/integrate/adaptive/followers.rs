@@ -10,6 +10,7 @@ use super::super::report::Ending;
 use super::super::{Job, Report, Result};
 use super::guide::{Guided, Path};
 use super::{Forces, Run};
+use crate::forces::term::Coupling;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::parallel::Ticker;
 use std::sync::Arc;
@@ -34,11 +35,13 @@ pub(super) struct Followers<'a> {
     units: &'a [&'a [Unit]],
     outputs: Arc<[f64]>,
     runs: Vec<Run<'a>>,
+    /// Whether they ask for the velocities of massive bodies.
+    pub(super) moving: bool,
 }
 
 impl<'a> Followers<'a> {
     pub(super) fn new(job: &'a Job<'a>, units: &'a [&'a [Unit]], outputs: &Arc<[f64]>) -> Self {
-        Self { job, units, outputs: Arc::clone(outputs), runs: Vec::new() }
+        Self { job, units, outputs: Arc::clone(outputs), runs: Vec::new(), moving: false }
     }
 
     /// Whether there are any in the run.
@@ -60,13 +63,14 @@ impl<'a> Followers<'a> {
         let Some(units) = self.units.get(index) else { return Ok(()) };
         for (place, unit) in units.iter().enumerate() {
             let mut unit = self.job.prepare(unit, ticker)?;
-            measure(&mut unit, guide, self.job);
+            measure(&mut unit, guide, self.job, ticker)?;
             let (run, lane) = match self.job.plan.layout {
                 Layout::Packed => (place / WIDTH, place % WIDTH),
                 Layout::Batched => (place, lane),
             };
             if run == self.runs.len() {
-                let guided = Guided::new(self.job.plan, guide, &[&unit]);
+                let guided = Guided::new(self.job.plan, guide, &[&unit])?;
+                self.moving = guided.asks_for_velocities();
                 self.runs.push(Run::new(self.job, unit.clone(), Forces::Along(guided), &self.outputs)?);
             }
             let run = &mut self.runs[run];
@@ -100,17 +104,34 @@ impl<'a> Followers<'a> {
 
 /// What the errors of a massless body are measured against: its distance from the nearest of the massive ones and its
 /// speed, or that of a circular orbit.
-fn measure(unit: &mut Prepared, guide: &Prepared, job: &Job<'_>) {
+///
+/// # Errors
+/// When the caller asks to stop.
+fn measure(unit: &mut Prepared, guide: &Prepared, job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<()> {
     let plan = job.plan;
+    let forces = plan.forces_of(unit.unit.copy);
     let (place, velocity) = (unit.position[0], unit.velocity[0]);
     let nearest = guide.position.iter().map(|&other| distance(place, other)).fold(f64::INFINITY, f64::min);
-    let softening = plan.forces_of(unit.unit.copy).iter().map(|force| force.length()).fold(0.0, f64::max);
+    let softening = forces.iter().map(|force| force.length()).fold(0.0, f64::max);
     let nearest = nearest.max(plan.units.take(softening, [1, 0, 0]));
     let length = if nearest > 0.0 && nearest.is_finite() { nearest } else { 1.0 };
     let total: f64 = guide.strength.iter().map(|x| x.abs()).sum();
     let orbital = (total / distance(place, guide.reference.center).max(length)).sqrt();
     let speed = distance(velocity, guide.reference.drift).max(orbital);
     unit.reference = guide.reference;
-    // Where there is neither, a body has the measure of the fall in another field.
-    unit.size = (length, if speed > 0.0 { speed } else { unit.size.1 });
+    // Where there is neither, a body has the measure of the fall to the massive ones, or in another field.
+    let rests = speed == 0.0;
+    let mut speed = if rests { unit.size.1 } else { speed };
+    if rests {
+        let itself = (unit.unit.bodies[0], unit.mass[0], place);
+        for ((&body, &mass), &other) in guide.unit.bodies.iter().zip(&guide.mass).zip(&guide.position) {
+            for force in forces.iter().filter(|force| force.coupling() == Coupling::AllPairs) {
+                let pair = [(body, mass, other), itself];
+                let field = force.strongest(&pair, plan.units, [plan.t0; 3], ticker)?;
+                speed = speed.max((field * length).sqrt());
+            }
+        }
+    }
+    unit.size = (length, speed);
+    Ok(())
 }

@@ -5,14 +5,14 @@
 
 use super::super::super::plan::Plan;
 use super::super::super::unit::{Prepared, uncoupled};
-use crate::error::Result;
-use crate::forces::gravity::passive::Pull;
-use crate::forces::gravity::series::passive::PullSeries;
+use crate::error::{Error, Result};
+use crate::forces::following::{Following, Leaders, Massive};
 use crate::forces::series::Series;
 use crate::forces::{Force, Phase};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::Real;
+use crate::ode::Scheme;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::system::{Form, Needs, System};
@@ -31,6 +31,8 @@ pub(super) struct Path {
     pub(super) h: Lanes,
     /// Coordinates, component after component.
     numbers: usize,
+    /// Whether velocities are asked for: they come after the places.
+    moving: bool,
     /// A block of numbers for `q`, one for `e` and one for each `f`.
     blocks: Vec<Lanes>,
     /// The same as series, of a method that has them.
@@ -41,13 +43,13 @@ pub(super) struct Path {
 
 impl Path {
     /// Of the step that the trial has tried from a state, once its continuous extension is ready; its stages are at these
-    /// fractions of it.
+    /// fractions of it. Where massless bodies ask for velocities, with those.
     pub(super) fn new(
         unit: &Prepared,
         (trial, fractions): (&dyn Trial<Lanes>, &[Lanes]),
         state: &State<Lanes>,
         h: Lanes,
-        packed: bool,
+        (packed, moving): (bool, bool),
     ) -> Self {
         let (q, rest) = state.position();
         let mut blocks = [q, rest].concat();
@@ -58,7 +60,12 @@ impl Path {
         }
         let coefficients = trial.series().map(|jet| Coefficients::new(unit, jet, packed));
         let stages = fractions.iter().map(|&fraction| (h * fraction, OnceLock::new())).collect();
-        Self { h, numbers, blocks, coefficients, stages }
+        Self { h, numbers, moving, blocks, coefficients, stages }
+    }
+
+    /// How many numbers tell where the bodies are, and how they move if that is asked for.
+    fn told(&self) -> usize {
+        if self.moving { 2 * self.numbers } else { self.numbers }
     }
 
     /// Of packed bodies each in all lanes: their numbers in blocks of a length.
@@ -76,7 +83,8 @@ impl Path {
         apart
     }
 
-    /// Writes where the bodies are at the time `t` since the start of the step.
+    /// Writes where the bodies are at the time `t` since the start of the step, and then how they move if that is asked for:
+    /// the derivative of the same polynomial.
     fn at(&self, t: &Lanes, into: &mut [Lanes]) {
         Lanes::pass(At { path: self, t, into });
     }
@@ -87,7 +95,7 @@ impl Path {
         let is_then = |time: &Lanes| (0..WIDTH).all(|lane| time.0[lane] == t.0[lane] || !lanes.lane(lane));
         let (time, places) = self.stages.iter().find(|(time, _)| is_then(time))?;
         Some(places.get_or_init(|| {
-            let mut places = vec![Lanes::zero(); self.numbers];
+            let mut places = vec![Lanes::zero(); self.told()];
             self.at(time, &mut places);
             places
         }))
@@ -104,48 +112,68 @@ impl Pass<Lanes> for At<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let Path { numbers, blocks, h, .. } = self.path;
-        let (blocks, into) = (V::view(blocks), V::view_mut(self.into));
-        let theta = V::load(*self.t) / V::load(*h);
-        let mut start = 0;
-        while *numbers - start >= 6 {
-            at::<V, 6>(blocks, *numbers, start, theta, into);
-            start += 6;
-        }
-        while *numbers - start >= 3 {
-            at::<V, 3>(blocks, *numbers, start, theta, into);
-            start += 3;
-        }
-        while *numbers - start >= 1 {
-            at::<V, 1>(blocks, *numbers, start, theta, into);
-            start += 1;
-        }
+        if self.path.moving { along::<V, true>(self) } else { along::<V, false>(self) }
+    }
+}
+
+#[inline(always)]
+fn along<V: View<Lanes>, const MOVING: bool>(At { path, t, into }: At<'_>) {
+    let Path { numbers, blocks, h, .. } = path;
+    let (blocks, into) = (V::view(blocks), V::view_mut(into));
+    let (theta, per_step) = (V::load(*t) / V::load(*h), V::one() / V::load(*h));
+    let mut start = 0;
+    while *numbers - start >= 6 {
+        at::<V, MOVING, 6>(blocks, *numbers, start, (theta, per_step), into);
+        start += 6;
+    }
+    while *numbers - start >= 3 {
+        at::<V, MOVING, 3>(blocks, *numbers, start, (theta, per_step), into);
+        start += 3;
+    }
+    while *numbers - start >= 1 {
+        at::<V, MOVING, 1>(blocks, *numbers, start, (theta, per_step), into);
+        start += 1;
     }
 }
 
 /// `G` coordinates from `start` on: one alone would wait for each of its operations.
 #[inline(always)]
-fn at<V: Real, const G: usize>(blocks: &[V], numbers: usize, start: usize, theta: V, into: &mut [V]) {
+fn at<V: Real, const MOVING: bool, const G: usize>(
+    blocks: &[V],
+    numbers: usize,
+    start: usize,
+    (theta, per_step): (V, V),
+    into: &mut [V],
+) {
     let rest = V::one() - theta;
-    let mut sums = [V::zero(); G];
+    let (mut sums, mut slopes) = ([V::zero(); G], [V::zero(); G]);
     let terms = blocks.len() / numbers - 2;
     for term in (0..terms).rev() {
-        let factor = if term % 2 == 0 { theta } else { rest };
+        let even = term % 2 == 0;
+        let factor = if even { theta } else { rest };
         let block = &blocks[(2 + term) * numbers + start..][..G];
         for g in 0..G {
-            sums[g] = factor * (block[g] + sums[g]);
+            let inner = block[g] + sums[g];
+            if MOVING {
+                // 1 − θ falls as θ grows.
+                slopes[g] = factor.multiply_add(slopes[g], if even { inner } else { -inner });
+            }
+            sums[g] = factor * inner;
         }
     }
     let (q, e) = (&blocks[start..][..G], &blocks[numbers + start..][..G]);
     for g in 0..G {
         into[start + g] = q[g] + (e[g] + sums[g]);
+        if MOVING {
+            into[numbers + start + g] = slopes[g] * per_step;
+        }
     }
 }
 
 /// One of the forces on massless bodies.
 enum Term {
-    /// The massive ones pull, with these `G·m`.
-    Pull { strength: Vec<Lanes>, softening2: f64, series: PullSeries },
+    /// That of the massive ones.
+    Following(Box<dyn Following>),
     /// Another, which does not couple them.
     Other(Box<dyn Force<Lanes>>, Option<Box<dyn Series<Lanes>>>),
 }
@@ -170,31 +198,34 @@ pub(super) struct Guided {
 
 impl Guided {
     /// For the massless bodies `units`, all following massive ones like `guide`.
-    pub(super) fn new(plan: &Plan, guide: &Prepared, units: &[&Prepared]) -> Self {
+    ///
+    /// # Errors
+    /// Only errors of the library itself.
+    pub(super) fn new(plan: &Plan, guide: &Prepared, units: &[&Prepared]) -> Result<Self> {
         let numbers = guide.unit.active * guide.shape.components;
+        let leaders = Leaders {
+            bodies: &guide.unit.bodies,
+            components: guide.shape.components,
+            units: plan.units,
+            expands: matches!(plan.method.scheme, Scheme::Taylor(_)),
+        };
         let mut terms = Vec::with_capacity(plan.forces.len());
-        for (force, kernel) in plan.forces.iter().zip(uncoupled(plan, units)) {
-            match (force.as_newtonian(), kernel) {
-                (Some((_, softening)), _) => {
-                    let softening = plan.units.take(softening, [1, 0, 0]);
-                    let softening2 = softening * softening;
-                    terms.push(Term::Pull {
-                        series: PullSeries::new(guide.unit.active, guide.shape.components, softening2),
-                        strength: vec![Lanes::zero(); guide.unit.active],
-                        softening2,
-                    });
-                }
-                (None, other) => terms.extend(other.map(|(force, series)| Term::Other(force, series))),
-            }
+        for (force, kernel) in plan.forces_of(guide.unit.copy).iter().zip(uncoupled(plan, units)) {
+            terms.push(match kernel {
+                Some((force, series)) => Term::Other(force, series),
+                None => Term::Following(force.following(&leaders).ok_or_else(unled)?),
+            });
         }
         let needs = terms.iter().fold(Needs { time: true, ..Needs::default() }, |needs, term| match term {
-            Term::Pull { .. } => needs,
+            Term::Following(force) => Needs { velocity: needs.velocity | force.needs_velocity(), ..needs },
             Term::Other(force, _) => needs.and(force.needs()),
         });
         let blocks = vec![Lanes::zero(); 3 * numbers];
-        Self {
+        let path =
+            Path { h: Lanes::one(), numbers, moving: false, blocks, coefficients: None, stages: Vec::new() };
+        Ok(Self {
             components: guide.shape.components,
-            path: Arc::new(Path { h: Lanes::one(), numbers, blocks, coefficients: None, stages: Vec::new() }),
+            path: Arc::new(path),
             base: Lanes::zero(),
             running: Bits(0xff),
             terms,
@@ -202,17 +233,19 @@ impl Guided {
             places: vec![Lanes::zero(); numbers],
             shifted: Shifted::default(),
             evaluations: 0,
-        }
+        })
+    }
+
+    /// Whether a force looks at the velocities of massive bodies.
+    pub(super) fn asks_for_velocities(&self) -> bool {
+        self.terms.iter().any(|term| matches!(term, Term::Following(force) if force.needs_velocity()))
     }
 
     /// Takes over the masses of a guide, and what is its own of the forces, for its lanes.
     pub(super) fn attach(&mut self, plan: &Plan, guide: &Prepared, lanes: Bits) {
         for (term, force) in self.terms.iter_mut().zip(plan.forces_of(guide.unit.copy)) {
-            if let (Term::Pull { strength, .. }, Some((constant, _))) = (term, force.as_newtonian()) {
-                let constant = plan.units.take(constant, [3, -1, -2]);
-                for (strength, mass) in strength.iter_mut().zip(&guide.mass) {
-                    *strength = Lanes::select(lanes, Lanes::splat(constant * mass), *strength);
-                }
+            if let Term::Following(leading) = term {
+                leading.lead(&**force, plan.units, &guide.mass, lanes);
             }
         }
     }
@@ -230,14 +263,15 @@ impl Guided {
     /// The massive bodies move along this path, from the time `base` on.
     pub(super) fn follow(&mut self, path: &Arc<Path>, base: Lanes) {
         (self.path, self.base) = (Arc::clone(path), base);
+        self.places.resize(path.told(), Lanes::zero());
     }
 
     /// Where the massive bodies of a lane are at the time `t` since the start of their step.
     pub(super) fn places(&mut self, t: f64, lane: usize) -> Vec<[f64; 3]> {
         self.path.at(&Lanes::splat(t), &mut self.places);
-        let massive = self.places.len() / self.components;
+        let massive = self.path.numbers / self.components;
         let mut places = vec![[0.0; 3]; massive];
-        for (number, place) in self.places.iter().enumerate() {
+        for (number, place) in self.places.iter().enumerate().take(self.path.numbers) {
             places[number % massive][number / massive] = place.0[lane];
         }
         places
@@ -273,16 +307,10 @@ impl System<Lanes> for Guided {
                 &self.places
             }
         };
+        let (places, velocities) = places.split_at(self.path.numbers);
         for (index, term) in self.terms.iter_mut().enumerate() {
             match term {
-                Term::Pull { strength, softening2, .. } => Lanes::pass(Pull {
-                    places,
-                    strength,
-                    softening2: *softening2,
-                    q,
-                    a: &mut *a,
-                    first: index == 0,
-                }),
+                Term::Following(force) => force.apply(Massive { places, velocities }, (q, v), a, index == 0),
                 Term::Other(force, _) => {
                     let phase = Phase { t: &(self.base + *t), q, v };
                     force.apply(&phase, a, index == 0, ticker)?;
@@ -296,4 +324,8 @@ impl System<Lanes> for Guided {
         self.evaluations += 1;
         self.expand_series(jet, ticker)
     }
+}
+
+fn unled() -> Error {
+    Error::Internal("a force that massless bodies do not follow".to_owned())
 }

@@ -6,7 +6,7 @@
 use super::super::super::super::unit::Prepared;
 use super::{Guided, Path, Term};
 use crate::error::{Error, Result};
-use crate::forces::gravity::series::passive::Massive;
+use crate::forces::following::MassiveSeries;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::Lanes;
@@ -111,9 +111,9 @@ impl Guided {
         for n in 0..jet.order {
             for (index, term) in self.terms.iter_mut().enumerate() {
                 match term {
-                    Term::Pull { strength, series, .. } => {
-                        let massive = Massive { strength, places: blocks, rests };
-                        series.coefficient(massive, (n, jet), a, index == 0);
+                    Term::Following(force) => {
+                        let massive = MassiveSeries { places: blocks, rests };
+                        force.coefficient(massive, (n, jet), a, index == 0)?;
                     }
                     Term::Other(_, Some(series)) => series.coefficient(n, jet, a, index == 0, ticker)?,
                     Term::Other(_, None) => {

@@ -1,0 +1,165 @@
+//! Sources that a massless body in each lane moves by, without a reaction.
+//!
+//! Canonical order: as for other bodies, one source after another as they are listed.
+
+use super::series::recurrences;
+use super::{Law, Relative, WrittenLaw, difference, vector};
+use crate::error::{Error, Result};
+use crate::expressions::series::Expansion;
+use crate::forces::ForceTerm;
+use crate::forces::following::{Following, Leaders, Massive, MassiveSeries};
+use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::lanes::{Bits, Lanes};
+use crate::numerics::real::Real;
+use crate::ode::series::Jet;
+use crate::units::Units;
+
+/// A source among the massive bodies.
+struct Leader {
+    /// Its place in the list, and among the massive bodies.
+    index: usize,
+    slot: usize,
+    /// The coefficients of what it does, of a method that asks for them.
+    pair: Option<Expansion<Lanes>>,
+}
+
+/// The sources that massless bodies follow.
+struct Leading<L> {
+    law: L,
+    /// The gravitational constant, in the units of the integration.
+    constant: f64,
+    leaders: Vec<Leader>,
+    /// Their gravitational parameters.
+    strength: Vec<Lanes>,
+}
+
+/// Of the massive bodies those that are listed; `constant` is the gravitational one, in the units of the integration.
+pub(in crate::forces) fn following<L: WrittenLaw>(
+    law: L,
+    listed: &[usize],
+    constant: f64,
+    massive: &Leaders<'_>,
+) -> Box<dyn Following> {
+    let slots = listed.iter().enumerate().filter_map(|(index, body)| {
+        massive.bodies.iter().position(|other| other == body).map(|slot| (index, slot))
+    });
+    let leader = |(index, slot)| Leader {
+        index,
+        slot,
+        pair: if massive.expands {
+            recurrences(&law, index).map(|series| Expansion::new(series, &[Lanes::zero()]))
+        } else {
+            None
+        },
+    };
+    let leaders: Vec<Leader> = slots.map(leader).collect();
+    Box::new(Leading { strength: vec![Lanes::zero(); leaders.len()], leaders, constant, law })
+}
+
+impl<L: WrittenLaw> Following for Leading<L> {
+    /// Only copies with the very same force share lanes, so the constant is that of all.
+    fn lead(&mut self, _: &dyn ForceTerm, _: Units, mass: &[f64], lanes: Bits) {
+        for (leader, strength) in self.leaders.iter_mut().zip(&mut self.strength) {
+            *strength = Lanes::select(lanes, Lanes::splat(self.constant * mass[leader.slot]), *strength);
+            if let Some(pair) = &mut leader.pair {
+                pair.set_parameters(&[*strength]);
+            }
+        }
+    }
+
+    fn needs_velocity(&self) -> bool {
+        L::VELOCITY
+    }
+
+    fn apply(&mut self, massive: Massive<'_>, (q, v): (&[Lanes], &[Lanes]), a: &mut [Lanes], first: bool) {
+        Lanes::pass(Pull { of: self, massive, q, v, a, first });
+    }
+
+    fn coefficient(
+        &mut self,
+        massive: MassiveSeries<'_>,
+        (n, jet): (usize, &Jet<Lanes>),
+        a: &mut [Lanes],
+        first: bool,
+    ) -> Result<()> {
+        if first {
+            a.fill(Lanes::zero());
+        }
+        let (numbers, components) = (massive.rests.len(), jet.len);
+        let bodies = numbers / components;
+        let square = jet.unit * jet.unit;
+        for leader in &mut self.leaders {
+            let Some(pair) = &mut leader.pair else {
+                return Err(Error::Internal("sources without their series".to_owned()));
+            };
+            for c in 0..3 {
+                let (mut d, mut velocity) = (Lanes::zero(), Lanes::zero());
+                if c < components {
+                    let at = c * bodies + leader.slot;
+                    d = jet.position(n)[c] - massive.places[n * numbers + at];
+                    if n == 0 {
+                        d += jet.rests[0][c] - massive.rests[at];
+                    }
+                    let order = Lanes::splat((n + 1) as f64);
+                    let own = order * massive.places[(n + 1) * numbers + at];
+                    velocity = (jet.velocity(n)[c] - own) * jet.per_unit;
+                }
+                pair.set(c, n, d);
+                pair.set(3 + c, n, velocity);
+            }
+            pair.expand(n);
+            for c in 0..components {
+                a[c] += pair.output(c, n) * square;
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Pull<'a, L> {
+    of: &'a Leading<L>,
+    massive: Massive<'a>,
+    q: &'a [Lanes],
+    v: &'a [Lanes],
+    a: &'a mut [Lanes],
+    first: bool,
+}
+
+impl<L: Law> Pass<Lanes> for Pull<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) {
+        if self.q.len() == 2 { pull::<V, L, 2>(self) } else { pull::<V, L, 3>(self) }
+    }
+}
+
+#[inline(always)]
+fn pull<V: View<Lanes>, L: Law, const COMPONENTS: usize>(pull: Pull<'_, L>) {
+    let Massive { places, velocities } = pull.massive;
+    let (places, velocities) = (V::view(places), V::view(velocities));
+    let (q, v, a) = (V::view(pull.q), V::view(pull.v), V::view_mut(pull.a));
+    let (leaders, strength) = (&pull.of.leaders[..], V::view(&pull.of.strength));
+    let stride = places.len() / COMPONENTS;
+    let place = vector(q, 0, 1, COMPONENTS);
+    let mut speed = [V::zero(); 3];
+    let mut sum = [V::zero(); 3];
+    if L::VELOCITY {
+        speed = vector(v, 0, 1, COMPONENTS);
+    }
+    if !pull.first {
+        sum = vector(a, 0, 1, COMPONENTS);
+    }
+    for i in 0..strength.len() {
+        let Leader { index, slot, .. } = leaders[i];
+        let d = difference(place, vector(places, slot, stride, COMPONENTS));
+        let mut velocity = [V::zero(); 3];
+        if L::VELOCITY {
+            velocity = difference(speed, vector(velocities, slot, stride, COMPONENTS));
+        }
+        let term = pull.of.law.pull(index, strength[i], &Relative::new(d, velocity));
+        for c in 0..3 {
+            sum[c] += term[c];
+        }
+    }
+    a[..COMPONENTS].copy_from_slice(&sum[..COMPONENTS]);
+}
