@@ -81,8 +81,10 @@ def at_rest(system: Lagrangian, sizes: Sizes) -> Energy:
 
 def units(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
     """Give units of coordinates in which masses are alike."""
-    with np.errstate(all="ignore"):
-        unit: NDArray[np.float64] = 1.0 / np.sqrt(np.abs(np.diag(matrices(system, place).mass)))
+    roots = np.sqrt(np.abs(np.diag(matrices(system, place).mass)))
+    # At a pole an angle has no mass.
+    known = (roots >= np.finfo(float).tiny) & np.isfinite(roots)
+    unit: NDArray[np.float64] = 1.0 / np.where(known, roots, 1.0)
     return unit
 
 
