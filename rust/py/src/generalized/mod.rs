@@ -253,7 +253,7 @@ impl GeneralizedModel {
         t: f64,
         starts: Array<'_>,
         parameters: Array<'_>,
-    ) -> PyResult<Vec<Option<(Vec<f64>, bool)>>> {
+    ) -> PyResult<Vec<small_motions::Reached>> {
         small_motions::equilibria(py, (&self.model, &self.small), t, &starts, &parameters)
     }
 

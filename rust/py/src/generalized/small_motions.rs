@@ -10,6 +10,9 @@ use visviva_core::Result;
 use visviva_core::generalized::Model;
 use visviva_core::generalized::linear::{Linear, Matrices, modes};
 
+/// A place that Newton's method has reached, if it has, and whether its steps tell it.
+pub(super) type Reached = Option<(Vec<f64>, bool)>;
+
 /// Forces and matrices as code: compiled once for a model.
 fn of<'a>(model: &Model, small: &'a OnceLock<Linear>) -> Result<&'a Linear> {
     if let Some(linear) = small.get() {
@@ -27,7 +30,7 @@ pub(super) fn equilibria(
     t: f64,
     starts: &Array<'_>,
     parameters: &Array<'_>,
-) -> PyResult<Vec<Option<(Vec<f64>, bool)>>> {
+) -> PyResult<Vec<Reached>> {
     let n = model.source.coordinates;
     let (starts, _) = copied("position", starts, [None, Some(n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
