@@ -40,11 +40,11 @@ def test_momenta_that_are_not_zero_at_rest() -> None:
 
 
 def test_a_zero_of_higher_order_is_found_once() -> None:
-    """H = p⁴/4 − q²/2 + q⁴/4, of which the linear equations tell no stable state."""
+    """H = p⁴/4 − q²/2 + q⁴/4 has minima at ±1, of which the linear equations do not tell, and a saddle between them."""
     found = hamiltonian(p**4 / 4 - q**2 / 2 + q**4 / 4).equilibria()
     np.testing.assert_allclose([place.position[0] for place in found], [-1.0, 0.0, 1.0], rtol=0, atol=1e-14)
     np.testing.assert_allclose([place.momentum[0] for place in found], 0.0, rtol=0, atol=1e-14)
-    assert not any(place.stable for place in found)
+    assert [place.stable for place in found] == [True, False, True]
 
 
 def test_they_are_those_of_the_lagrangian() -> None:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Record, Sheet, Shown, as_text, briefly
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._calculus import Calculus
-from visviva.generalized._probe import terms_of
+from visviva.generalized._matrices import Sizes, matrices, matrices_along, rounding
+from visviva.generalized._multiple_zeros import at_rest, left_open, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,9 +25,6 @@ __all__ = ["Linearization", "PoincareSection", "linearization"]
 
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
 _ON_THE_AXIS = 1e-7
-#: How far places and parameters are moved to see what rounding makes of a matrix, and how often.
-_LAST_DIGITS = 2.0**-51
-_NUDGES = 3
 #: Forces below this part of what they are made of are round-off, or that of the place.
 _BALANCED = 1e-8
 
@@ -50,7 +48,7 @@ class Linearization(Shown):
     modes : ndarray, shape (n, n), or None
         Rows with ξᵀ M ξ = 1, in the order of the squared frequencies; None with damping or gyroscopic terms.
     squares : ndarray, shape (n,), or None
-        Squared frequencies, those of unstable modes negative.
+        Squared frequencies, those of unstable modes negative, and 0 where they are but round-off.
     rounding : ndarray, shape (n, n)
         By how much K may be off: what it changes by where place and parameters change in their last digits.
     coordinates : tuple of str
@@ -272,64 +270,50 @@ class PoincareSection(Record):
         return ax
 
 
-def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
+def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None = None) -> Linearization:
     """Small motions of a Lagrangian about a place."""
     n = len(system.coordinates)
     place = system._start()[:n] if at is None else float_array("at", at, (n,))
-    found = system._model.linearized(system.t0, place, system._values)
+    sizes = Sizes(system) if sizes is None else sizes
+    found = matrices(system, place)
+    small = _core.eigenmodes(found.mass, found.damping, found.stiffness)
     # What rounding of the place, and of what a force is the sum of, makes of it: in any units, and next to zero too.
-    scale = np.abs(found["stiffness"]) @ np.abs(place)
-    off = np.abs(found["forces"]) > _BALANCED * scale
+    scale = np.abs(found.stiffness) @ np.abs(place)
+    off = ~(np.abs(found.forces) <= _BALANCED * scale)
     if off.any():
-        off = np.abs(found["forces"]) > _BALANCED * (scale + _sizes_of_forces(system, place))
+        off = ~(np.abs(found.forces) <= _BALANCED * (scale + sizes.forces(place[None])[0]))
     if off.any():
-        worst = int(np.argmax(np.abs(found["forces"]) * off))
+        worst = int(np.argmax(np.where(off, np.abs(found.forces), 0.0)))
         raise InvalidInput(
             "at",
-            f"expected an equilibrium, but a force of {found['forces'][worst]:.3g} acts on "
+            f"expected an equilibrium, but a force of {found.forces[worst]:.3g} acts on "
             f"{system.coordinates[worst]!r} there; see equilibria()",
         )
-    symmetric = found["symmetric"]
+    off_by = rounding(system, place, found.stiffness, sizes)
+    # Places have one size, in units of masses.
+    unit = units(system, place)
+    size = unit * np.abs(place / unit).max(initial=0.0)
+    left = left_open(at_rest(system, sizes), place, size, unit) if n > 1 and place.any() else None
+    if left is not None:
+        # A zero of higher order is told by forces to some of its digits only, and so is K there.
+        _, beside = matrices_along(system, np.stack([place + left, place - left]))
+        off_by = np.fmax(off_by, np.abs(beside - found.stiffness).max(axis=0))
+    squares: NDArray[np.float64] | None = None
+    modes: NDArray[np.float64] | None = None
+    if small["symmetric"] is not None:
+        squares, modes = small["symmetric"]
+    if squares is not None and modes is not None:
+        # Of a level direction rounding makes a square of its own size, and a frequency of its root.
+        known = ((np.abs(modes) @ off_by) * np.abs(modes)).sum(axis=1)
+        squares = np.where(np.abs(squares) > known, squares, 0.0)
     return Linearization(
         place,
-        found["mass"],
-        found["damping"],
-        found["stiffness"],
-        np.array([complex(*value) for value in found["eigenvalues"]]),
-        None if symmetric is None else symmetric[1],
-        None if symmetric is None else symmetric[0],
-        _rounding(system, place, found["stiffness"]),
+        found.mass,
+        found.damping,
+        found.stiffness,
+        np.array([complex(*value) for value in small["eigenvalues"]]),
+        modes,
+        squares,
+        off_by,
         tuple(system.coordinates),
     )
-
-
-def _rounding(system: Lagrangian, place: NDArray[np.float64], stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give what the last digits of the place and of parameters make of K."""
-    off = _LAST_DIGITS * np.abs(stiffness)
-    count = len(place) + len(system._values)
-    for turn in range(_NUDGES):
-        # Signs that differ from turn to turn, so that no two changes take each other away each time.
-        signs = np.where((np.arange(count) * (2 * turn + 1) // 2 + turn) % 2, 1.0, -1.0)
-        nudged, values = place * (1.0 + _LAST_DIGITS * signs[: len(place)]), system._values
-        values = values * (1.0 + _LAST_DIGITS * signs[len(place) :])
-        other = system._model.linearized(system.t0, nudged, values)["stiffness"]
-        off = np.fmax(off, np.abs(other - stiffness))
-    return off
-
-
-def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is but itself."""
-    c, n = Calculus(system), len(place)
-    further = c.adopted(system._source.description["nodes"], system._source.description["forces"])
-    forces = [[slope] for slope in c.of_system("slopes")]
-    for force, other in zip(forces, further, strict=False):
-        force.append(other)
-    sums = [terms_of(c, force) for force in forces]
-    several = [terms if len(terms) > 1 else [] for terms in sums]
-    flat = [term for terms in several for term in terms]
-    if not flat:
-        return np.zeros(n)
-    state = np.concatenate([place, np.zeros(n)])[None]
-    values = np.abs(c.values(flat, np.array([system.t0]), state, system._values)[0])
-    parts = np.split(values, np.cumsum([len(terms) for terms in several])[:-1])
-    return np.array([np.where(np.isfinite(part), part, 0.0).sum() for part in parts])

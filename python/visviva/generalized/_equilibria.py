@@ -16,10 +16,15 @@ from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import linearization
+from visviva.generalized._higher_orders import rises
+from visviva.generalized._matrices import Sizes, matrices, matrices_along
+from visviva.generalized._multiple_zeros import at_rest, settled
+from visviva.generalized._stability import level_and_held
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.generalized._analysis import Linearization
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["SAME", "Equilibrium", "equilibria", "starts_of_a_search"]
@@ -45,7 +50,8 @@ class Equilibrium(Record):
     ----------
     position : ndarray, shape (n,)
     stable : bool
-        Whether small motions about it stay small, as the linear equations tell.
+        Whether small motions about it stay small, as the linear equations tell, and the energy where these leave a
+        direction level: at a minimum of any order they do, where it falls they do not.
     frequencies : ndarray, shape (at most n,)
         Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)
@@ -100,8 +106,8 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
-    found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
-    reached = np.array([place for place in found if place is not None]).reshape(-1, n)
+    sizes = Sizes(system)
+    reached = _reached(system, starts, sizes)
     distinguishing = np.ones(n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     if near is None:
@@ -117,18 +123,24 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     while len(reached):
         places.append(reached[0])
         reached = reached[((np.abs(reached - reached[0]) > SAME * size) & distinguishing).any(axis=1)]
-    results, without_mass = [], []
+    results: list[Equilibrium] = []
+    without_mass, without_slopes = [], []
     for place in sorted(places, key=tuple):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue
         try:
-            small = linearization(system, place)
-        except InvalidInput:
-            # Where Newton's method has stopped, but forces are left.
+            small = linearization(system, place, sizes)
+        except InvalidInput as refusal:
+            if not all(np.isfinite(part).all() for part in matrices(system, place)):
+                without_slopes.append(refusal)
+            # Else Newton's method has stopped where forces are left.
             continue
         momentum = system.at(position=place, velocity=np.zeros(n)).momentum
-        results.append(Equilibrium(place, small.stable, small.frequencies, momentum))
+        stable = small.stable and not _leaves(system, small, sizes)
+        results.append(Equilibrium(place, stable, small.frequencies, momentum))
+    if without_slopes and not results:
+        raise without_slopes[0]
     if without_mass and not results:
         raise InvalidInput(
             "L",
@@ -138,13 +150,34 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     return results
 
 
+def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes) -> NDArray[np.float64]:
+    """Where Newton's method ends (S, n): what its steps tell, and what is nearly told where forces are round-off."""
+    n = len(system.coordinates)
+    found = [each for each in system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values) if each]
+    told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
+    nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
+    told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)
+    if not len(told) and not np.isfinite(matrices_along(system, starts)[0]).all(axis=1).any():
+        # Forces that have no value at rest, as those of dry friction, are told by name.
+        linearization(system, starts[0], sizes)
+    return told
+
+
+def _leaves(system: Lagrangian, small: Linearization, sizes: Sizes) -> bool:
+    """Whether the potential falls beside a place where it is level to second order, and nothing else holds."""
+    about = level_and_held(small.mass, small.damping, small.stiffness, small.rounding)
+    if about is None:
+        return False
+    return bool((rises(at_rest(system, sizes), small.position, about, small.rounding) < 0.0).any())
+
+
 def _mass_is_singular(system: Lagrangian, place: NDArray[np.float64]) -> bool:
     """Tell whether a coordinate has no mass at a place, but for what the last digits of the place make of it."""
+    masses = [matrices(system, where).mass for where in (place, place * (1.0 + _LAST_DIGITS))]
     try:
-        mass, nudged = (
-            np.abs(system._model.linearized(system.t0, where, system._values)["mass"]).max(axis=1)
-            for where in (place, place * (1.0 + _LAST_DIGITS))
-        )
-    except InvalidInput:
+        for mass in masses:
+            np.linalg.inv(mass)
+    except np.linalg.LinAlgError:
         return True
+    mass, nudged = (np.abs(each).max(axis=1) for each in masses)
     return bool((np.abs(nudged - mass) > _MADE_OF_THEM * mass).any())

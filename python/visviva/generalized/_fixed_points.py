@@ -2,7 +2,7 @@
 
 The one idea: Newton's method runs from many states at once, with the derivatives of the rates that the variational
 equations have; what it comes to is kept where a step no longer leads elsewhere, and eigenvalues of those derivatives
-tell of small motions.
+tell of small motions. Where these leave H level to second order, a minimum or a maximum of any order is stable.
 """
 
 from __future__ import annotations
@@ -13,12 +13,19 @@ import numpy as np
 
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
+from visviva.generalized._calculus import Calculus
 from visviva.generalized._equilibria import SAME, Equilibrium, starts_of_a_search
+from visviva.generalized._higher_orders import Energy, curvatures, rises
+from visviva.generalized._kinks import with_limits
+from visviva.generalized._matrices import LAST_DIGITS, nudges
+from visviva.generalized._multiple_zeros import left_open, told_apart
+from visviva.generalized._probe import terms_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._higher_orders import Curvatures
 
 __all__ = ["fixed_points"]
 
@@ -31,7 +38,9 @@ _LONGEST = np.pi
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
-_IMAGINARY = 1e-7
+_ON_THE_AXIS = 1e-7
+#: States are found to this part of their sizes.
+_FOUND = SAME
 
 
 def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -67,18 +76,23 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     while len(states):
         places.append(states[0])
         states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
-    return [_equilibrium(system, place) for place in sorted(places, key=tuple)]
+    energy = _energy(system)
+    places = told_apart(energy, places, size, np.ones_like)
+    return [_equilibrium(system, energy, place, size) for place in sorted(places, key=tuple)]
 
 
 def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where Newton's method ends from each state, if it comes to an equilibrium."""
     step = np.full(states.shape, np.inf)
+    at_kinks = [states[:0]]
     for _ in range(_STEPS):
         rates, slopes = _rates_and_slopes(system, states)
+        # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
+        at_kinks.append(states[(rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))])
         finite = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
         states, step, rates, slopes = states[finite], step[finite], rates[finite], slopes[finite]
         if not len(states):
-            return states
+            return np.concatenate(at_kinks)
         # Rates that change little, as beside a zero of higher order, count as others do.
         most = np.abs(slopes).max(axis=2, keepdims=True)
         most[most == 0.0] = 1.0
@@ -92,29 +106,122 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.flo
     settled = (np.abs(step) <= SAME * (1.0 + np.abs(states))).all(axis=1)
     least = np.finfo(float).eps * np.abs(slopes).max(axis=(1, 2), initial=0.0)[:, None]
     kept: NDArray[np.bool_] = settled & (np.abs(rates) <= _BALANCED * made_of + least).all(axis=1)
-    return states[kept]
+    return np.concatenate([states[kept], *at_kinks])
 
 
 def _rates_and_slopes(
-    system: Hamiltonian, states: NDArray[np.float64]
+    system: Hamiltonian, states: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rates (S, 2n) at states, and their derivatives (S, 2n, 2n)."""
     count, n = states.shape
     model = system._model.variational()
     unit = np.broadcast_to(np.eye(n).ravel(), (count, n * n))
-    t, values = np.full(count, system.t0), np.broadcast_to(system._values, (count, len(system._values)))
+    numbers = system._values if parameters is None else parameters
+    t, values = np.full(count, system.t0), np.broadcast_to(numbers, (count, len(numbers)))
     with np.errstate(all="ignore"):
         found = model.rates(t, np.concatenate([states, unit], axis=1), np.ascontiguousarray(values))
     return found[:, :n], found[:, n:].reshape(count, n, n)
 
 
-def _equilibrium(system: Hamiltonian, state: NDArray[np.float64]) -> Equilibrium:
+def _equilibrium(
+    system: Hamiltonian, energy: Energy, state: NDArray[np.float64], size: NDArray[np.float64]
+) -> Equilibrium:
     n = len(system.coordinates)
-    _, slopes = _rates_and_slopes(system, state[None])
-    values, vectors = np.linalg.eig(slopes[0])
+    slopes = _slopes(system, state)
+    if not np.isfinite(slopes).all():
+        raise InvalidInput(
+            "H",
+            f"expected rates that have derivatives at the equilibrium {state.round(6).tolist()}, and they have none: "
+            "there is a kink, as that of |q|; round it off, as by sqrt(q² + width²), or look elsewhere by near",
+        )
+    # Of rates with forces that no function has, nothing but the linear equations tells.
+    second, off = _second(slopes[None])[0], np.abs(_second(_rounding(system, state, size, slopes)[None])[0])
+    left = left_open(energy, state, size, np.ones(2 * n))
+    if left is not None:
+        beside = energy.slopes(np.stack([state + left, state - left]))[1]
+        off = np.fmax(off, np.abs(beside - second).max(axis=0))
+    about = curvatures(np.where(np.abs(second) > off, second, 0.0), off)
+    level = about is not None and bool((about.values == 0.0).any())
+    if about is not None and level:
+        scaled = about.vectors * about.sizes[:, None]
+        slopes = _rates_of((scaled * about.values) @ scaled.T * about.sizes * about.sizes[:, None])
+    values, vectors = np.linalg.eig(slopes)
     largest = np.abs(values).max(initial=0.0)
-    imaginary = np.abs(values.real) <= _IMAGINARY * largest
-    # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
-    own = largest > 0.0 and np.linalg.svd(vectors, compute_uv=False)[-1] > _IMAGINARY
-    frequencies = np.sort(np.abs(values.imag[values.imag > 0.0]))
-    return Equilibrium(state[:n], bool(imaginary.all() and own), frequencies, state[n:])
+    # A pair of zeros that are level is told by half of the digits.
+    least = _ON_THE_AXIS * largest if level else 0.0
+    frequencies = np.sort(np.abs(values.imag[values.imag > least]))
+    stable = bool((values.real <= _ON_THE_AXIS * largest).all())
+    if stable and not (values.real < -_ON_THE_AXIS * largest).all():
+        by_energy = _by_energy(energy, state, about, off) if about is not None and level else None
+        # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
+        own = bool(largest > 0.0) and bool(np.linalg.svd(vectors, compute_uv=False)[-1] > _ON_THE_AXIS)
+        stable = own if by_energy is None else by_energy
+    return Equilibrium(state[:n], stable, frequencies, state[n:])
+
+
+def _slopes(
+    system: Hamiltonian, state: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """Derivatives of the rates (2n, 2n) at a state, and what they come to where their formulas have none."""
+    width = len(state)
+
+    def evaluate(states: NDArray[np.float64]) -> NDArray[np.float64]:
+        rates, slopes = _rates_and_slopes(system, states, parameters)
+        return np.concatenate([rates, slopes.reshape(len(states), -1)], axis=1)
+
+    return with_limits(evaluate, state, width)[width:].reshape(width, width)
+
+
+def _second(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give ∂²H (S, 2n, 2n) of the derivatives of rates J ∂H."""
+    n = slopes.shape[-1] // 2
+    return np.concatenate([-slopes[:, n:], slopes[:, :n]], axis=1)
+
+
+def _rates_of(second: NDArray[np.float64]) -> NDArray[np.float64]:
+    n = len(second) // 2
+    return np.concatenate([second[n:], -second[:n]])
+
+
+def _rounding(
+    system: Hamiltonian, state: NDArray[np.float64], size: NDArray[np.float64], slopes: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Give what the last digits of the state, as they are found, and of parameters make of the derivatives of rates."""
+    off = LAST_DIGITS * np.abs(slopes)
+    n = len(state)
+    for signs in nudges(n + len(system._values)):
+        other = _slopes(system, state + _FOUND * size * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
+        off = np.fmax(off, np.abs(other - slopes))
+    return off
+
+
+def _energy(system: Hamiltonian) -> Energy:
+    n = len(system.coordinates)
+    c = Calculus(system)
+    (row,) = c.with_derivatives(c.of_system("function"))
+    sums = [terms_of(c, [each]) for each in row[1 : 1 + 2 * n]]
+
+    def slopes(states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        rates, derivatives = _rates_and_slopes(system, states)
+        return np.concatenate([-rates[:, n:], rates[:, :n]], axis=1), _second(derivatives)
+
+    def sizes(states: NDArray[np.float64]) -> NDArray[np.float64]:
+        times = np.full(len(states), system.t0)
+        found = [
+            np.abs(c.values(each, times, states, system._values)).sum(axis=1) if each else np.zeros(len(states))
+            for each in sums
+        ]
+        return np.stack(found, axis=1)
+
+    return Energy(slopes, sizes)
+
+
+def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64]) -> bool | None:
+    """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known."""
+    known = set(np.sign(about.values[about.values != 0.0]))
+    if len(known) > 1:
+        return None
+    beside = set(rises(energy, state, about, off))
+    if {-1.0, 1.0} <= known | beside:
+        return False
+    return None if 0.0 in beside else True

@@ -12,19 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva.generalized._higher_orders import curvatures
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["is_stable"]
+    from visviva.generalized._higher_orders import Curvatures
 
-_EPSILON = float(np.finfo(float).eps)
+__all__ = ["is_stable", "level_and_held"]
+
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis: of a double zero half the
 #: digits are known.
 _ON_THE_AXIS = 1e-7
-#: Roundings of an entry beside what it was told to be uncertain by, and of eigenvalues.
-_ROUNDINGS = 8.0
-#: Entries of a symmetric matrix differ by no more than this part of what they are divided by.
-_SYMMETRIC = 1e-12
 
 
 def is_stable(
@@ -69,17 +68,20 @@ def _block(
 
 def _lowest(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> float | None:
     """Give an eigenvalue of the sign of the lowest one, 0 where that is round-off; nothing if it is not symmetric."""
-    sizes = np.sqrt(np.abs(np.diag(matrix)))
-    rows = np.abs(matrix).max(axis=1)
-    # Nothing on the diagonal: as large as makes what is beside it 1.
-    known = np.where(sizes > 0.0, sizes, 1.0)
-    beside = (np.abs(matrix) / known).max(axis=1)
-    sizes = np.where(sizes > 0.0, sizes, np.where(rows > 0.0, beside, 1.0))
-    scaled = matrix / sizes / sizes[:, None]
-    if np.abs(scaled - scaled.T).max() > _SYMMETRIC * max(1.0, np.abs(scaled).max()):
+    found = curvatures(matrix, rounding)
+    return None if found is None else float(found.values.min())
+
+
+def level_and_held(
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+) -> Curvatures | None:
+    """Give the curvatures of K, if it is level, and nothing turns: M is positive, and no terms are gyroscopic."""
+    zero = np.zeros_like(mass)
+    of_mass, of_damping = _lowest(mass, zero), _lowest(damping, zero)
+    if of_mass is None or of_damping is None or not of_mass > 0.0 <= of_damping:
         return None
-    values = np.linalg.eigvalsh((scaled + scaled.T) / 2.0)
-    off = np.abs(rounding / sizes / sizes[:, None]).sum(axis=1).max()
-    off += _ROUNDINGS * len(matrix) * _EPSILON * np.abs(values).max()
-    lowest = float(values[0])
-    return lowest if abs(lowest) > off else 0.0
+    found = curvatures(np.where(np.abs(stiffness) > rounding, stiffness, 0.0), rounding)
+    return found if found is not None and found.values.min() == 0.0 else None

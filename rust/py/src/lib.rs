@@ -47,7 +47,7 @@ mod _core {
     #[pymodule_export]
     use crate::fitted::{fitted, tabulated_drag};
     #[pymodule_export]
-    use crate::generalized::GeneralizedModel;
+    use crate::generalized::{GeneralizedModel, eigenmodes};
     #[pymodule_export]
     use crate::heavy_top::{
         top_least_spin, top_motion, top_nutation, top_sleeping_threshold, top_steady_precession,

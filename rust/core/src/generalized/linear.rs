@@ -7,7 +7,7 @@
 use super::model::{Kind, Model};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Graph, Id, Machine, Node};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Schur, SymmetricEigen};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -24,6 +24,10 @@ const STEADY: f64 = 1e-2;
 const UNBALANCED: f64 = 1e-10;
 /// Singular values of K, its rows and columns measured by masses, below this part of the largest are zero.
 const SINGULAR: f64 = 1e-10;
+/// Where no step is round-off, the place of the shortest one may be an equilibrium: if that is below this part of the places.
+const NEARLY: f64 = 1e-3;
+/// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
+const ROTATIONS: usize = 100_000;
 
 /// Codes of forces at rest and of the matrices of small motions.
 #[derive(Clone, Debug)]
@@ -96,12 +100,17 @@ impl Linear {
 
     /// The matrices at a place, at rest.
     pub fn matrices(&self, t: f64, q: &[f64], parameters: &[f64]) -> Matrices {
+        let mut state = q.to_vec();
+        state.resize(2 * self.n, 0.0);
+        self.matrices_at(t, &state, parameters)
+    }
+
+    /// The matrices at a state.
+    pub fn matrices_at(&self, t: f64, state: &[f64], parameters: &[f64]) -> Matrices {
         let n = self.n;
         let mut machine = Machine::new(self.code.clone(), parameters);
-        let mut state = q.to_vec();
-        state.resize(2 * n, 0.0);
         let mut found = vec![0.0; self.code.outputs()];
-        machine.evaluate(t, &state, &mut found);
+        machine.evaluate(t, state, &mut found);
         let block = |index: usize, sign: f64| -> Vec<f64> {
             found[n + index * n * n..n + (index + 1) * n * n].iter().map(|x| sign * x).collect()
         };
@@ -113,14 +122,35 @@ impl Linear {
         }
     }
 
-    /// The equilibrium that Newton's method reaches from a place, if it reaches one.
-    pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<Vec<f64>> {
+    /// The equilibrium that Newton's method reaches from a place, and whether it is told by its steps: where forces are but
+    /// round-off around a zero of higher order, steps are too, and the place of the shortest one is given.
+    pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<(Vec<f64>, bool)> {
+        let mut shortest = (f64::INFINITY, vec![]);
+        let mut visited = 0.0;
+        let found = self.by_newton(t, start, parameters, &mut shortest, &mut visited);
+        let nearly = || (shortest.0 <= NEARLY * visited).then_some((shortest.1, false));
+        found.map(|place| (place, true)).or_else(nearly)
+    }
+
+    /// By Newton's steps, of which the shortest is kept with the place that it leads to.
+    fn by_newton(
+        &self,
+        t: f64,
+        start: &[f64],
+        parameters: &[f64],
+        shortest: &mut (f64, Vec<f64>),
+        visited: &mut f64,
+    ) -> Option<Vec<f64>> {
         let n = self.n;
         let mut q = start.to_vec();
         // Sizes are those of the places on the way, times the roots of masses: systems may be of any size.
-        let (mut visited, mut last, mut shrunk) = (0.0_f64, f64::INFINITY, f64::NAN);
+        let (mut last, mut shrunk) = (f64::INFINITY, f64::NAN);
         for step in 1..=MOST_STEPS {
             let at = self.matrices(t, &q, parameters);
+            // Nothing is left to be stepped to, whether or not forces have slopes here, as 3 x |x| has.
+            if at.forces.iter().all(|&force| force == 0.0) && at.stiffness.iter().any(|x| !x.is_finite()) {
+                return Some(q);
+            }
             let units = units(&at.mass, n);
             let Step { correction, remains, stiffest } = newton_step(&at, &units)?;
             let most = (0..n).map(|i| correction[i].abs() / units[i]).fold(0.0_f64, f64::max);
@@ -137,14 +167,17 @@ impl Linear {
                 let next = q[i] + whole * correction[i];
                 moved |= next != q[i];
                 close &= correction[i].abs() <= FOUND * next.abs();
-                visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
+                *visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
                 q[i] = next;
             }
+            if most < shortest.0 {
+                *shortest = (most, q.clone());
+            }
             // Next to zero a place has no digits of its own: it is found when steps are round-off, and no longer shrink.
-            let ended = most <= NOISE * visited && most >= SHRINKS * last;
-            let exhausted = step == MOST_STEPS && most <= FOUND * visited;
+            let ended = most <= NOISE * *visited && most >= SHRINKS * last;
+            let exhausted = step == MOST_STEPS && most <= FOUND * *visited;
             if !moved || close || ended || exhausted {
-                return (remains <= UNBALANCED * stiffest * visited).then_some(q);
+                return (remains <= UNBALANCED * stiffest * *visited).then_some(q);
             }
             last = most;
         }
@@ -186,7 +219,7 @@ fn newton_step(at: &Matrices, units: &[f64]) -> Option<Step> {
     {
         return Some(Step { correction: given(&step), remains: 0.0, stiffest });
     }
-    let svd = scaled.try_svd(true, true, f64::EPSILON, 0)?;
+    let svd = scaled.try_svd(true, true, f64::EPSILON, ROTATIONS)?;
     let least = SINGULAR * svd.singular_values.max();
     let (left, right) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
     let along = left.tr_mul(&forces);
@@ -213,8 +246,9 @@ pub struct Modes {
 /// Small motions of these matrices.
 ///
 /// # Errors
-/// A singular mass matrix.
+/// A singular mass matrix; matrices that are not numbers, of which there are no eigenvalues, and no end of looking for them.
 pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
+    finite(matrices, n)?;
     let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness]
         .map(|rows| DMatrix::from_row_slice(n, n, rows));
     let singular = || Error::invalid("position", "the mass matrix is singular there");
@@ -223,17 +257,25 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
     first_order.view_mut((0, n), (n, n)).fill_with_identity();
     first_order.view_mut((n, 0), (n, n)).copy_from(&(-(&inverse * &stiffness)));
     first_order.view_mut((n, n), (n, n)).copy_from(&(-(&inverse * &damping)));
-    let eigenvalues = first_order.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
+    let outside =
+        || Error::invalid("at", "eigenvalues of small motions leave the range of numbers; take other units");
+    if first_order.iter().any(|x| !x.is_finite()) {
+        return Err(outside());
+    }
+    let schur = Schur::try_new(first_order, f64::EPSILON, ROTATIONS).ok_or_else(outside)?;
+    let eigenvalues = schur.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
     let scale = stiffness.amax();
     let is_symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * scale;
-    let symmetric =
-        (damping.amax() == 0.0 && is_symmetric).then(|| mass.clone().cholesky()).flatten().map(|cholesky| {
+    let symmetric = (damping.amax() == 0.0 && is_symmetric)
+        .then(|| mass.clone().cholesky())
+        .flatten()
+        .and_then(|cholesky| {
             // L⁻¹ K L⁻ᵀ has the squares, and L⁻ᵀ its vectors as modes.
             let lower = cholesky.l();
             let half = lower.solve_lower_triangular(&stiffness).unwrap_or_else(|| stiffness.clone());
             let whole = lower.solve_lower_triangular(&half.transpose()).unwrap_or(half);
             let whole = (&whole + whole.transpose()) * 0.5;
-            let eigen = whole.symmetric_eigen();
+            let eigen = SymmetricEigen::try_new(whole, f64::EPSILON, ROTATIONS)?;
             let vectors =
                 lower.transpose().solve_upper_triangular(&eigen.eigenvectors).unwrap_or(eigen.eigenvectors);
             let mut order: Vec<usize> = (0..n).collect();
@@ -241,7 +283,28 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
             let squares = order.iter().map(|&k| eigen.eigenvalues[k]).collect();
             let rows =
                 order.iter().flat_map(|&k| vectors.column(k).iter().copied().collect::<Vec<f64>>()).collect();
-            (squares, rows)
+            Some((squares, rows))
         });
     Ok(Modes { eigenvalues, symmetric })
+}
+
+/// Whether all entries are numbers.
+fn finite(matrices: &Matrices, n: usize) -> Result<()> {
+    let named =
+        [("stiffness", &matrices.stiffness), ("damping", &matrices.damping), ("mass", &matrices.mass)];
+    for (name, entries) in named {
+        if let Some(index) = entries.iter().position(|x| !x.is_finite()) {
+            return Err(Error::invalid(
+                "at",
+                format!(
+                    "expected forces that have derivatives at this place, but the {name} matrix has none in row {} and \
+                     column {}: there is a kink there, as that of |x| or of dry friction at rest, or a pole; round it off, \
+                     as by sqrt(x² + width²), or look at another place",
+                    index / n,
+                    index % n
+                ),
+            ));
+        }
+    }
+    Ok(())
 }

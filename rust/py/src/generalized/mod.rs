@@ -16,6 +16,7 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use runs::Asked;
+pub(crate) use small_motions::eigenmodes;
 use std::sync::{Arc, OnceLock};
 use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
@@ -244,26 +245,27 @@ impl GeneralizedModel {
         constraints::projected(py, &self.model, t, &state, &parameters)
     }
 
-    /// The equilibria that Newton's method reaches from starts (S, n), `None` where it reaches none.
+    /// The equilibria that Newton's method reaches from starts (S, n), each with whether its steps tell it, `None` where it
+    /// reaches none.
     fn equilibria(
         &self,
         py: Python<'_>,
         t: f64,
         starts: Array<'_>,
         parameters: Array<'_>,
-    ) -> PyResult<Vec<Option<Vec<f64>>>> {
+    ) -> PyResult<Vec<small_motions::Reached>> {
         small_motions::equilibria(py, (&self.model, &self.small), t, &starts, &parameters)
     }
 
-    /// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
-    fn linearized<'py>(
+    /// F (S, n), and M, C and K (S, n, n) of small motions, at states (S, 2n).
+    fn matrices<'py>(
         &self,
         py: Python<'py>,
         t: f64,
-        position: Array<'py>,
+        states: Array<'py>,
         parameters: Array<'py>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        small_motions::linearized(py, (&self.model, &self.small), t, &position, &parameters)
+    ) -> PyResult<[Column<'py>; 4]> {
+        small_motions::matrices(py, (&self.model, &self.small), t, &states, &parameters)
     }
 
     /// Of one coordinate: turning points, period and action of the oscillation; with a turn, (period, action) of a rotation.

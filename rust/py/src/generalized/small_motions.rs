@@ -1,6 +1,6 @@
 //! Small motions: equilibria, and the linear equations about a place at rest.
 
-use super::Array;
+use super::{Array, Column};
 use crate::arrays::{copied, moved};
 use crate::gate::compute;
 use pyo3::prelude::*;
@@ -8,7 +8,10 @@ use pyo3::types::PyDict;
 use std::sync::OnceLock;
 use visviva_core::Result;
 use visviva_core::generalized::Model;
-use visviva_core::generalized::linear::{Linear, modes};
+use visviva_core::generalized::linear::{Linear, Matrices, modes};
+
+/// A place that Newton's method has reached, if it has, and whether its steps tell it.
+pub(super) type Reached = Option<(Vec<f64>, bool)>;
 
 /// Forces and matrices as code: compiled once for a model.
 fn of<'a>(model: &Model, small: &'a OnceLock<Linear>) -> Result<&'a Linear> {
@@ -19,14 +22,15 @@ fn of<'a>(model: &Model, small: &'a OnceLock<Linear>) -> Result<&'a Linear> {
     Ok(small.get_or_init(|| linear))
 }
 
-/// The equilibria that Newton's method reaches from starts (S, n), `None` where it reaches none.
+/// The equilibria that Newton's method reaches from starts (S, n), each with whether its steps tell it, `None` where it
+/// reaches none.
 pub(super) fn equilibria(
     py: Python<'_>,
     (model, small): (&Model, &OnceLock<Linear>),
     t: f64,
     starts: &Array<'_>,
     parameters: &Array<'_>,
-) -> PyResult<Vec<Option<Vec<f64>>>> {
+) -> PyResult<Vec<Reached>> {
     let n = model.source.coordinates;
     let (starts, _) = copied("position", starts, [None, Some(n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
@@ -41,28 +45,52 @@ pub(super) fn equilibria(
     .whole(py)
 }
 
-/// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
-pub(super) fn linearized<'py>(
+/// F (S, n) and M, C and K (S, n, n) at states (S, 2n).
+pub(super) fn matrices<'py>(
     py: Python<'py>,
     (model, small): (&Model, &OnceLock<Linear>),
     t: f64,
-    position: &Array<'py>,
+    states: &Array<'py>,
     parameters: &Array<'py>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<[Column<'py>; 4]> {
     let n = model.source.coordinates;
-    let (position, _) = copied("position", position, [Some(n)])?;
+    let (states, [count, _]) = copied("states", states, [None, Some(2 * n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
-    let (at, found) = compute(py, 0, None, |_| {
-        let at = of(model, small)?.matrices(t, &position, &parameters);
-        let found = modes(&at, n)?;
-        Ok((at, found))
+    let found = compute(py, 0, None, |_| {
+        let linear = of(model, small)?;
+        let all = states.chunks(2 * n).map(|state| linear.matrices_at(t, state, &parameters));
+        let mut found: [Vec<f64>; 4] = Default::default();
+        for at in all {
+            for (column, part) in found.iter_mut().zip([at.forces, at.mass, at.damping, at.stiffness]) {
+                column.extend(part);
+            }
+        }
+        Ok(found)
     })?
     .whole(py)?;
+    let [forces, mass, damping, stiffness] = found;
+    Ok([
+        moved(py, forces, &[count, n])?,
+        moved(py, mass, &[count, n, n])?,
+        moved(py, damping, &[count, n, n])?,
+        moved(py, stiffness, &[count, n, n])?,
+    ])
+}
+
+/// Eigenvalues, squared frequencies and modes of M, C and K (n, n).
+#[pyfunction]
+pub(crate) fn eigenmodes<'py>(
+    py: Python<'py>,
+    mass: Array<'py>,
+    damping: Array<'py>,
+    stiffness: Array<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (mass, [n, _]) = copied("mass", &mass, [None, None])?;
+    let (damping, _) = copied("damping", &damping, [Some(n), Some(n)])?;
+    let (stiffness, _) = copied("stiffness", &stiffness, [Some(n), Some(n)])?;
+    let matrices = Matrices { mass, damping, stiffness, forces: vec![] };
+    let found = compute(py, 0, None, |_| modes(&matrices, n))?.whole(py)?;
     let result = PyDict::new(py);
-    result.set_item("mass", moved(py, at.mass, &[n, n])?)?;
-    result.set_item("damping", moved(py, at.damping, &[n, n])?)?;
-    result.set_item("stiffness", moved(py, at.stiffness, &[n, n])?)?;
-    result.set_item("forces", moved(py, at.forces, &[n])?)?;
     result.set_item("eigenvalues", found.eigenvalues)?;
     result.set_item(
         "symmetric",

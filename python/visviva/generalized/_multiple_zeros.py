@@ -1,0 +1,197 @@
+"""Where forces vanish to a higher order, and are but round-off long before.
+
+The one idea: a zero of F of third order is a simple one of F″, which is found to all digits though F tells but a third
+of them. Of several coordinates no such derivative is at hand: of places that forces cannot tell apart, one is given.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.generalized._calculus import Calculus
+from visviva.generalized._higher_orders import Energy
+from visviva.generalized._matrices import matrices, matrices_along
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._matrices import Sizes
+
+__all__ = ["at_rest", "left_open", "settled", "told_apart", "units"]
+
+_EPSILON = float(np.finfo(float).eps)
+#: Roundings of what forces are the sums of.
+_ROUNDINGS = 64.0
+#: Derivatives of a force that are looked at.
+_ORDERS = 8
+#: At least so many, but no further ones of an expression that has grown larger than this.
+_FEWEST = 4
+_MOST_NODES = 400
+#: Newton's steps on one of them, of which the first is shorter than this part of the places that are looked at.
+_STEPS = 4
+_NEAR = 1e-2
+#: Distances within which forces may be round-off, as parts of the places that are looked at.
+_WITHIN = 2.0 ** -np.arange(48.0, 6.0, -1.0)
+#: Stiffnesses that are this part of those so far beside them may be of a higher order; singular values, of others.
+_SOFT = 1e-4
+_BESIDE = 1e-3
+_LEVEL = 1e-6
+#: Places that are told apart less than this many times what forces leave of them are one.
+_ONE = 4.0
+
+
+def settled(
+    system: Lagrangian,
+    told: NDArray[np.float64],
+    nearly: NDArray[np.float64],
+    size: NDArray[np.float64],
+    sizes: Sizes,
+) -> NDArray[np.float64]:
+    """Places as well as forces tell them: those that steps have told (T, n), and which of (S, n) are equilibria."""
+    size = np.where(size > 0.0, size, 1.0)
+    energy = at_rest(system, sizes)
+    if len(nearly):
+        nearly = nearly[_round_off(energy, nearly, size).all(axis=1)]
+    if told.shape[1] == 1:
+        soft = _soft(system, told, size)
+        places = np.concatenate([told[soft], nearly])
+        if len(places):
+            better = _by_derivatives(system, places, size, sizes)
+            places = np.where(_round_off(energy, better, size), better, places)
+        return np.concatenate([told[~soft], places])
+    found = told_apart(energy, [*told, *nearly], size, lambda place: units(system, place))
+    return np.array(found).reshape(-1, told.shape[1])
+
+
+def at_rest(system: Lagrangian, sizes: Sizes) -> Energy:
+    """Give the potential of the forces at rest."""
+
+    def slopes(places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        forces, stiffness = matrices_along(system, places)
+        return -forces, stiffness
+
+    return Energy(slopes, sizes.forces)
+
+
+def units(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give units of coordinates in which masses are alike."""
+    roots = np.sqrt(np.abs(np.diag(matrices(system, place).mass)))
+    # At a pole an angle has no mass.
+    known = (roots >= np.finfo(float).tiny) & np.isfinite(roots)
+    unit: NDArray[np.float64] = 1.0 / np.where(known, roots, 1.0)
+    return unit
+
+
+def _soft(system: Lagrangian, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether places (S, 1) are so much softer than what is beside them that the force may vanish to a higher order."""
+    stiffness, left, right = (
+        np.abs(matrices_along(system, places + part * size)[1]).reshape(-1) for part in (0.0, _BESIDE, -_BESIDE)
+    )
+    soft: NDArray[np.bool_] = stiffness <= _SOFT * np.fmax(left, right)
+    return soft
+
+
+def _round_off(energy: Energy, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether slopes at places are nothing but round-off (S, n), that of places beside their sizes, too."""
+    first, second = energy.slopes(places)
+    made_of = np.einsum("sij,sj->si", np.abs(second), np.fmax(np.abs(places), size)) + energy.sizes(places)
+    small: NDArray[np.bool_] = np.abs(first) <= _ROUNDINGS * _EPSILON * made_of
+    return small
+
+
+def left_open(
+    energy: Energy, place: NDArray[np.float64], size: NDArray[np.float64], unit: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """How far a place (n) may be moved along a nearly level direction until slopes are seen; nothing without one.
+
+    `unit` has units of coordinates in which second derivatives are compared.
+    """
+    second = energy.slopes(place[None])[1][0]
+    scaled = second * unit * unit[:, None]
+    if not np.isfinite(scaled).all():
+        return None
+    values, vectors = np.linalg.svd(scaled)[1:]
+    if values[-1] > _LEVEL * values[0]:
+        return None
+    softest = vectors[-1] * unit
+    softest *= size[np.abs(softest).argmax()] / np.abs(softest).max()
+    unseen = np.ones(len(_WITHIN), dtype=bool)
+    for sign in (1.0, -1.0):
+        unseen &= _round_off(energy, place + sign * _WITHIN[:, None] * softest, size).all(axis=1)
+    # As far as all distances below are unseen, too: places are not joined over a hill.
+    reached = _WITHIN[np.logical_and.accumulate(unseen)]
+    left: NDArray[np.float64] = reached.max(initial=0.0) * softest
+    return left
+
+
+def told_apart(
+    energy: Energy,
+    places: Iterable[NDArray[np.float64]],
+    size: NDArray[np.float64],
+    unit: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+) -> list[NDArray[np.float64]]:
+    """Give one of places that slopes cannot tell apart, with zeros where these may be."""
+    found: list[NDArray[np.float64]] = []
+    for place in places:
+        apart, least = np.abs(np.array(found).reshape(-1, len(place)) - place), _ROUNDINGS * _EPSILON * size
+        if (apart <= least).all(axis=1).any():
+            continue
+        left = left_open(energy, place, size, unit(place))
+        if left is None:
+            found.append(place)
+            continue
+        left = least + _ONE * np.abs(left)
+        if (apart <= left).all(axis=1).any():
+            continue
+        snapped = np.where(np.abs(place) <= left, 0.0, place)
+        found.append(snapped if _round_off(energy, snapped[None], size).all() else place)
+    return found
+
+
+def _by_derivatives(
+    system: Lagrangian, places: NDArray[np.float64], size: NDArray[np.float64], sizes: Sizes
+) -> NDArray[np.float64]:
+    """Places (S, 1) at the zero of that derivative of the force which tells it best."""
+    c = Calculus(system)
+    (terms,) = sizes.expressions(c)
+    force = terms[0]
+    for term in terms[1:]:
+        force = force + term
+    chain = [force]
+    while len(chain) <= _ORDERS and (len(chain) < _FEWEST or len(c._nodes.all) <= _MOST_NODES):
+        chain.append(c.with_derivatives([chain[-1]])[0][1])
+    orders = len(chain) - 1
+
+    def values(of: NDArray[np.float64]) -> NDArray[np.float64]:
+        states = np.concatenate([of, np.zeros_like(of)], axis=1)
+        return c.values(chain, np.full(len(of), system.t0), states, system._values)
+
+    with np.errstate(all="ignore"):
+        found = values(places)
+        # What each is the sum of, if it is one of powers.
+        made_of = [
+            sum(np.abs(found[:, j + k] * places[:, 0] ** k) / factorial(k) for k in range(orders + 1 - j))
+            for j in range(orders)
+        ]
+        left = np.abs(np.stack(made_of, axis=1) / found[:, 1:]) + np.abs(places)
+        steps = np.abs(found[:, :-1] / found[:, 1:])
+        left = np.where(np.isfinite(left) & (steps <= _NEAR * size), left, np.inf)
+        # The highest of those that tell as much: a power has all of its digits in each of them.
+        good = np.isfinite(left) & (left <= _ONE * left.min(axis=1, keepdims=True))
+        best = np.where(good, np.arange(orders), 0).max(axis=1)
+        for _ in range(_STEPS):
+            rows = np.arange(len(places))
+            step = found[rows, best] / found[rows, best + 1]
+            places = places - np.where(np.isfinite(step), step, 0.0)[:, None]
+            found = values(places)
+    return places
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
