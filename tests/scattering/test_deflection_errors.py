@@ -97,33 +97,3 @@ def test_what_is_asked_for_or_what_was_reached(case: tuple[object, ...], toleran
         # The tolerance is of what is added up, a few times ψ where the attraction is strong, and more of small angles.
         size = max(abs(found.angle[i]), min(1.0, 1e3 * abs(found.angle[i])))
         assert found.error[i] <= max(3e-14, 4.0 * tolerance) * size, (energy[i], b[i])
-
-
-# By mpmath with 40 digits, in the angle whose sine is r₀/r, split at the barrier that is all but touched.
-BESIDE_THE_HIGHEST_ORBIT = {
-    (0.8001, 1.7543): -15.35428077488378041,
-    (0.8, 1.7544): -21.46423344202273596,
-    (0.79, 1.7591): -15.04548740669438800,
-}
-
-
-@pytest.mark.parametrize("pair", BESIDE_THE_HIGHEST_ORBIT)
-def test_a_steep_wall_behind_a_barrier(pair: tuple[float, float]) -> None:
-    """What a turning point is rounded by on the wall is no other impact parameter: that was 35 times what was told."""
-    energy, b = pair
-    found = s.deflect(V.LennardJones(1.0, 1.0), energy=energy, impact_parameter=b)
-    rounding = 2.0 * np.finfo(float).eps * float(found.conditioning)
-    assert abs(float(found.angle) - BESIDE_THE_HIGHEST_ORBIT[pair]) <= 2.0 * float(found.error) + rounding
-
-
-@pytest.mark.parametrize(
-    "potential",
-    [V.LennardJones(1.0, 1.0), V.Yukawa(-1.0, 1.0), V.Morse(1.0, 2.0, 1.2), V.ScreenedCoulomb(1.0, 1.0, "moliere")],
-    ids=repr,
-)
-def test_an_angle_is_the_same_beside_others(potential: V.Potential) -> None:
-    """Of `deflect` and of `deflection_angle`: whatever else is asked for, to the bit."""
-    random = np.random.default_rng(8)
-    energy, b = 10.0 ** random.uniform(-2.0, 2.0, 500), 10.0 ** random.uniform(-2.0, 1.0, 500)
-    alone = s.deflection_angle(potential, energy=energy, impact_parameter=b)
-    assert s.deflect(potential, energy=energy, impact_parameter=b).angle.tobytes() == alone.tobytes()

@@ -24,8 +24,6 @@ const STEADY: f64 = 1e-2;
 const UNBALANCED: f64 = 1e-10;
 /// Singular values of K, its rows and columns measured by masses, below this part of the largest are zero.
 const SINGULAR: f64 = 1e-10;
-/// Where no step is round-off, the place of the shortest one may be an equilibrium: if that is below this part of the places.
-const NEARLY: f64 = 1e-3;
 /// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
 const ROTATIONS: usize = 100_000;
 
@@ -123,28 +121,26 @@ impl Linear {
     }
 
     /// The equilibrium that Newton's method reaches from a place, and whether it is told by its steps: where forces are but
-    /// round-off around a zero of higher order, steps are too, and the place of the shortest one is given.
+    /// round-off around a zero of higher order, steps are too, and of the places on the way that of the least force is given.
     pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<(Vec<f64>, bool)> {
-        let mut shortest = (f64::INFINITY, vec![]);
-        let mut visited = 0.0;
-        let found = self.by_newton(t, start, parameters, &mut shortest, &mut visited);
-        let nearly = || (shortest.0 <= NEARLY * visited).then_some((shortest.1, false));
+        let mut calmest = (f64::INFINITY, vec![]);
+        let found = self.by_newton(t, start, parameters, &mut calmest);
+        let nearly = || (!calmest.1.is_empty()).then_some((calmest.1, false));
         found.map(|place| (place, true)).or_else(nearly)
     }
 
-    /// By Newton's steps, of which the shortest is kept with the place that it leads to.
+    /// By Newton's steps; the place of the least force on the way is kept.
     fn by_newton(
         &self,
         t: f64,
         start: &[f64],
         parameters: &[f64],
-        shortest: &mut (f64, Vec<f64>),
-        visited: &mut f64,
+        calmest: &mut (f64, Vec<f64>),
     ) -> Option<Vec<f64>> {
         let n = self.n;
         let mut q = start.to_vec();
         // Sizes are those of the places on the way, times the roots of masses: systems may be of any size.
-        let (mut last, mut shrunk) = (f64::INFINITY, f64::NAN);
+        let (mut last, mut shrunk, mut visited) = (f64::INFINITY, f64::NAN, 0.0_f64);
         for step in 1..=MOST_STEPS {
             let at = self.matrices(t, &q, parameters);
             // Nothing is left to be stepped to, whether or not forces have slopes here, as 3 x |x| has.
@@ -152,6 +148,10 @@ impl Linear {
                 return Some(q);
             }
             let units = units(&at.mass, n);
+            let force = (0..n).map(|i| (at.forces[i] * units[i]).abs()).fold(0.0, f64::max);
+            if force < calmest.0 {
+                *calmest = (force, q.clone());
+            }
             let Step { correction, remains, stiffest } = newton_step(&at, &units)?;
             let most = (0..n).map(|i| correction[i].abs() / units[i]).fold(0.0_f64, f64::max);
             // To a zero of higher order all corrections shrink by one factor: what is left is a geometric series.
@@ -167,17 +167,14 @@ impl Linear {
                 let next = q[i] + whole * correction[i];
                 moved |= next != q[i];
                 close &= correction[i].abs() <= FOUND * next.abs();
-                *visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
+                visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
                 q[i] = next;
             }
-            if most < shortest.0 {
-                *shortest = (most, q.clone());
-            }
             // Next to zero a place has no digits of its own: it is found when steps are round-off, and no longer shrink.
-            let ended = most <= NOISE * *visited && most >= SHRINKS * last;
-            let exhausted = step == MOST_STEPS && most <= FOUND * *visited;
+            let ended = most <= NOISE * visited && most >= SHRINKS * last;
+            let exhausted = step == MOST_STEPS && most <= FOUND * visited;
             if !moved || close || ended || exhausted {
-                return (remains <= UNBALANCED * stiffest * *visited).then_some(q);
+                return (remains <= UNBALANCED * stiffest * visited).then_some(q);
             }
             last = most;
         }

@@ -4,6 +4,8 @@
 //! The one idea: the coefficients that make the step also say how long it may be, before it is taken, so none is refused;
 //! and they are the continuous extension. Orders and steps: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 
+mod visited;
+
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
@@ -12,10 +14,9 @@ use super::passes::step_by_series::{Choice, Chosen, FAR, Missed, OwnMissed};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
-use super::system::{Form, System, Taken, Visited};
+use super::system::{Form, System};
 use super::trial::{Cost, Trial};
 use crate::error::Result;
-use crate::numerics::angles::cos;
 use crate::numerics::element::Element;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
@@ -41,8 +42,6 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const NEXT_ORDERS: f64 = 300.0;
 /// The first unit of numbers that are measured by themselves, as a part of the whole time.
 const FIRST_UNIT: f64 = 1.0 / 1024.0;
-/// Of so many places a step is asked what it went through.
-const VISITED: usize = 13;
 /// How far numbers go in a step is found from the step, and that from how far they go: each time with a seventh of the error.
 /// The unit of time, within a factor of four of the step, so leaves 4 % of it.
 const REFINEMENTS: usize = 1;
@@ -196,47 +195,6 @@ impl<S: Controlled> TaylorStep<S> {
             (places, Some(Sum { y, blocks: v, rest: None, highest: order, into: of_v }))
         };
         S::pass(Sums { of, times });
-    }
-
-    /// The step as who asks what it has not seen is shown it.
-    fn taken<'a>(
-        &'a self,
-        asked: S::Mask,
-        state: &'a State<S>,
-        from: S,
-        visited: &'a dyn Fn(usize) -> Visited,
-    ) -> Taken<'a, S> {
-        let ends = [state.all().0, self.next.all().0];
-        Taken { asked, from, h: self.h, ends, rates: None, nodes: &[], series: true, visited: Some(visited) }
-    }
-
-    /// The states that the step goes through in a lane.
-    fn visited(&self, state: &State<S>, lane: usize) -> Visited {
-        let Jet { q, v, len, order, unit, .. } = &self.jet;
-        let (unit, h) = (unit.lane(lane), self.h.lane(lane));
-        let sum = |blocks: &[S], highest: usize, index: usize, x: f64| {
-            let coefficients = (0..=highest).rev().map(|n| blocks[n * len + index].lane(lane));
-            coefficients.fold(0.0, |sum, coefficient| sum * x + coefficient)
-        };
-        let second_order = matches!(state.form(), Form::SecondOrder(_));
-        let at = |k: usize| {
-            // Where polynomials of a high degree swing least.
-            let place = 0.5 - 0.5 * cos(core::f64::consts::PI * k as f64 / (VISITED - 1) as f64);
-            let place = if k == 0 {
-                0.0
-            } else if k == VISITED - 1 {
-                1.0
-            } else {
-                place
-            };
-            let x = place * h / unit;
-            let highest = if second_order { order + 1 } else { *order };
-            let places = (0..*len).map(|index| sum(q, highest, index, x));
-            let moving =
-                (0..if second_order { *len } else { 0 }).map(|index| sum(v, *order, index, x) / unit);
-            (place, places.chain(moving).collect())
-        };
-        (0..VISITED).map(at).collect()
     }
 
     /// The coefficients of one number of a block, of the orders from one on, in powers of the fraction of the step, times

@@ -36,15 +36,8 @@ pub(crate) fn deflections<'py>(
         .whole(py)?;
         return Ok((vec![moved(py, angles, &shape)?], Vec::new()));
     }
-    let found = compute(py, 2 * b.len() as u64, None, |ticker| {
-        let deflector = Deflector::new(&potential, tolerance)?;
-        let mut found = deflector.deflect(&energy, &b, true, threads, ticker)?;
-        // The angle is that of who asks for nothing else, to the bit: of all there is, other sums are taken.
-        let angles = deflector.deflect(&energy, &b, false, threads, ticker)?;
-        for (found, Deflection { angle, complement, error, .. }) in found.iter_mut().zip(angles) {
-            (found.angle, found.complement, found.error) = (angle, complement, error);
-        }
-        Ok(found)
+    let found = compute(py, b.len() as u64, None, |ticker| {
+        Deflector::new(&potential, tolerance)?.deflect(&energy, &b, true, threads, ticker)
     })?
     .whole(py)?;
     let column = |of: fn(&Deflection) -> f64| moved(py, found.iter().map(of).collect(), &shape);

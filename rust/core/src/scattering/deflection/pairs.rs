@@ -26,11 +26,6 @@ const CANCELLED: f64 = 0.05;
 /// What nodes leave out, as a part of the tolerance.
 const LEFT_OUT: f64 = 0.05;
 
-/// Up to this V/E has more digits than what is left of one.
-const WEAK: f64 = 0.25;
-/// V/E at a turning point differs by no more from what it would be there but for rounding.
-const ROUNDED: f64 = 1e-9;
-
 /// Pairs by quadrature.
 pub(super) struct Quadrature<'a> {
     pub(super) profile: &'a Profile,
@@ -264,9 +259,8 @@ impl Quadrature<'_> {
     ) {
         let profile = self.profile;
         let nearness = turning.nearness[at];
-        let met = sums.met.lane(lane);
-        let (r, y, root) = (pack.turning.0[lane], pack.force.0[lane], pack.root.0[lane]);
-        let x = if met { pack.value.0[lane] } else { as_it_turns(pack.value.0[lane], root) };
+        let (r, x, y, root) =
+            (pack.turning.0[lane], pack.value.0[lane], pack.force.0[lane], pack.root.0[lane]);
         found.closest_approach = r;
         found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
         let strong = x < STRONG;
@@ -279,7 +273,7 @@ impl Quadrature<'_> {
             let curvature = pack.curvature.0[lane];
             Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
         };
-        let (integral, mut error) = if met {
+        let (integral, mut error) = if sums.met.lane(lane) {
             let integral = &sums.integral;
             ([integral[0].0[lane], integral[1].0[lane], integral[2].0[lane]], sums.error.0[lane])
         } else {
@@ -318,14 +312,6 @@ impl Quadrature<'_> {
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)
     }
-}
-
-/// V/E where b/r₀ is known: 1 − (b/r₀)². V itself is that of the distance as it is rounded, which on a steep wall is by tens
-/// of roundings another: the whole way would be that of another b, and near orbiting be off by as much as that makes there.
-/// Of a weak potential V alone has the digits, and at a jump of V nothing turns where it is E.
-fn as_it_turns(value: f64, root: f64) -> f64 {
-    let exact = (1.0 - root) * (1.0 + root);
-    if value.abs() > WEAK && (value - exact).abs() <= ROUNDED * (1.0 + root * root) { exact } else { value }
 }
 
 /// Places in the order of their reaches.

@@ -93,7 +93,9 @@ fn unit_of_length(potential: &dyn Potential) -> i32 {
         },
         |length| exponent(*length),
     );
-    if place.abs() > IN_THE_MIDDLE { place } else { 0 }
+    // What is nowhere one, or everywhere more, has no such place.
+    let told = place.abs() > IN_THE_MIDDLE && place.abs() < MOST_OCTAVES - IN_THE_MIDDLE;
+    if told { place } else { 0 }
 }
 
 impl Profile {
