@@ -113,7 +113,7 @@ def test_followers_go_where_bodies_of_tiny_mass_go(method: str, forces: tuple[vv
     bodies = system(3, 9)
     masses = np.where(bodies.mass > 0.0, bodies.mass, 1e-40)
     joint = vv.Scene(vv.Particles(masses, bodies.position, bodies.velocity), *forces)
-    how = {"t": [0.9, 5.0, 12.0], "rtol": 1e-11}
+    how: dict[str, Any] = {"t": [0.9, 5.0, 12.0], "rtol": 1e-11}
     exact, out = (
         joint.run(**{**how, "rtol": 1e-13}, method="verner98"),
         vv.Scene(bodies, *forces).run(method=method, **how),
@@ -177,7 +177,8 @@ def test_pericenters_of_massless_bodies_advance(method: str, drift: float) -> No
 def test_events_of_followers(method: str, forces: tuple[vv.Force, ...]) -> None:
     """Events leave every bit, and are found where outputs at their times are: within twice the tolerance of a step."""
     bodies = system(3, 20)
-    scene, how = vv.Scene(bodies, *forces), {"method": method, "rtol": 1e-10}
+    how: dict[str, Any] = {"method": method, "rtol": 1e-10}
+    scene = vv.Scene(bodies, *forces)
     plain = scene.run(t=[0.0, 6.0], **how)
     # Half of the way, and of what a distance changes by: passed for sure.
     start, end = plain.position
