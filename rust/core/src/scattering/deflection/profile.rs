@@ -93,9 +93,10 @@ fn unit_of_length(potential: &dyn Potential) -> i32 {
         },
         |length| exponent(*length),
     );
-    // What is nowhere one, or everywhere more, has no such place.
+    // What is nowhere one, or everywhere more, has no such place. Energies may be far from one as well: no farther from the
+    // caller's unit than it takes.
     let told = place.abs() > IN_THE_MIDDLE && place.abs() < MOST_OCTAVES - IN_THE_MIDDLE;
-    if told { place } else { 0 }
+    if told { place - IN_THE_MIDDLE * place.signum() } else { 0 }
 }
 
 impl Profile {
