@@ -111,7 +111,10 @@ class Runs(States):
             )
         steps = np.diff(outputs, prepend=self.t0) * (1.0 if outputs[-1] >= self.t0 else -1.0)
         if (steps < 0.0).any():
-            raise InvalidInput("t", f"expected times in order from t0 = {self.t0:g} on")
+            wrong = int(np.argmax(steps < 0.0))
+            before = outputs[wrong - 1] if wrong else self.t0
+            message = f"expected times in order from t0 = {self.t0:g} on, got {outputs[wrong]:g} after {before:g}"
+            raise InvalidInput("t", message)
         return outputs
 
     def run(

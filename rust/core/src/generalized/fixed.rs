@@ -74,16 +74,9 @@ impl<S: Controlled> Trial<S> for FixedSteps<S> {
         } else {
             self.stepper.between(self.node, h, &mut self.next, system, ticker)?;
         }
-        self.seen = system.seen_until(&Taken {
-            asked: running,
-            from: clock.elapsed,
-            h: S::next_step(clock, running),
-            ends: [state.all().0, self.next.all().0],
-            rates: None,
-            nodes: &[],
-            series: false,
-            visited: None,
-        })?;
+        let (times, ends) =
+            ((clock.elapsed, S::next_step(clock, running)), [state.all().0, self.next.all().0]);
+        self.seen = system.seen_until(&Taken::from_end_to_end(running, times, ends))?;
         // Without an error the next step is the longest, which is this one.
         let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));
         clock.h = S::splat(self.h);

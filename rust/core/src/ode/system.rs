@@ -97,6 +97,13 @@ pub struct Taken<'a, S: Element> {
     pub visited: Option<&'a dyn Fn(usize) -> Visited>,
 }
 
+impl<'a, S: Element> Taken<'a, S> {
+    /// One of which nothing is known but where it began and where it ended.
+    pub fn from_end_to_end(asked: S::Mask, (from, h): (S, S), ends: [&'a [S]; 2]) -> Self {
+        Self { asked, from, h, ends, rates: None, nodes: &[], series: false, visited: None }
+    }
+}
+
 /// A system of ordinary differential equations, of one trajectory or of eight in lanes. Times are counted from the start
 /// of the run, so that a start far from zero costs no digits; a system that does not need them may be given any.
 pub trait System<S: Element>: Send {

@@ -99,16 +99,8 @@ impl Trial<f64> for DiscreteStep {
         let h = f64::next_step(clock, running);
         self.step(self.t0 + clock.elapsed, h, false)?;
         write(&self.after, &mut self.next);
-        let _all = system.seen_until(&Taken {
-            asked: true,
-            from: clock.elapsed,
-            h,
-            ends: [state.all().0, self.next.all().0],
-            rates: None,
-            nodes: &[],
-            series: false,
-            visited: None,
-        })?;
+        let ends = [state.all().0, self.next.all().0];
+        let _all = system.seen_until(&Taken::from_end_to_end(true, (clock.elapsed, h), ends))?;
         // Without an error the next step is the longest, which is this one.
         let outcome = f64::settle(clock, running, 0.0, &Rule::new(1, self.h.abs()));
         clock.h = self.h;
