@@ -65,3 +65,50 @@ def test_a_start_at_rest_has_no_direction_of_friction() -> None:
     with pytest.raises(vv.InvalidInput, match="no number at the start") as refused:
         pole.run(1.0)
     assert refused.value.argument == "position"
+
+
+#: Equal steps of methods whose stages lie on both sides of the leap, and in eight lanes.
+EQUAL = [("rk4", 0.1), ("rk4", 0.01), ("midpoint", 0.01), ("heun", 0.01), ("euler", 0.001), ("gauss4", 0.01)]
+
+
+def pushed(push: float = 0.3) -> vv.Lagrangian:
+    """v' = −0.3 − 0.5 sign v: from 1 to rest at t = 1.25, 0.625 away, where it is held."""
+    return vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 - push * q[0],
+        ["x"],
+        position=[0.0],
+        velocity=[1.0],
+        dissipation=lambda q, v, t: 0.5 * abs(v[0]),
+    )
+
+
+@pytest.mark.parametrize(("method", "dt"), EQUAL)
+def test_equal_steps_do_not_creep(method: str, dt: float) -> None:
+    with pytest.raises(vv.ConvergenceError, match="a velocity sticks at zero") as stuck:
+        pushed().run([0.0, 100.0], method=method, dt=dt)
+    assert abs(stuck.value.time - 1.25) <= 2.0 * dt
+    # A step before it, at less than a step's change of the velocity; Euler's error is half a step's way.
+    assert abs(float(stuck.value.trajectory.final.position[0]) - 0.625) <= dt  # type: ignore[union-attr]
+    copies = pushed().ensemble(velocity=[[1.0], [2.0], [0.5]]).run([0.0, 100.0], method=method, dt=dt)
+    assert (copies.status == vv.Status.STEP_FAILURE).all()
+
+
+@pytest.mark.parametrize(("method", "dt"), EQUAL)
+def test_equal_steps_pass_where_friction_does_not_hold(method: str, dt: float) -> None:
+    """With a push of 0.7 beyond the friction of 0.5 it turns at t = 1/1.2 and comes back."""
+    out = pushed(0.7).run([0.0, 3.0], method=method, dt=dt)
+    turned = 1.0 / 1.2
+    # A step across the leap errs by a step's way.
+    assert float(out.position[-1, 0]) == pytest.approx(0.5 * turned - 0.1 * (3.0 - turned) ** 2, abs=2.0 * dt)
+
+
+def test_equal_steps_stop_at_zero_of_drag_only_where_it_is_dry() -> None:
+    """Drag that goes with the square of the velocity holds nothing, nor does a stiff damper."""
+    quadratic = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 - q[0] ** 2) / 2,
+        ["x"],
+        position=[1.0],
+        velocity=[0.0],
+        forces={"x": lambda q, v, t: -0.5 * v[0] * abs(v[0]) - 5.0 * v[0]},
+    )
+    assert quadratic.run([0.0, 30.0], method="rk4", dt=0.01).status is vv.Status.OK

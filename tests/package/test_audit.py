@@ -219,6 +219,36 @@ def test_curl_near_a_center_that_is_far_from_the_origin() -> None:
     assert not vv.audit.curl(lambda r: vv.audit.field(field)(r) + 1e-3 * turning(r), places).conservative
 
 
+UNIFORM = np.array([0.1, 0.0, -9.81])
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        vv.UniformField([0.0, 0.0, -9.81]),
+        vv.UniformElectricField([0.1, 0.2, 0.3]),
+        vv.ExpressionForce(potential=lambda r, v, t: 9.81 * r[2]),
+        vv.Harmonic(3.0, center=[3e5, 0.0, 0.0]),
+    ],
+    ids=lambda force: type(force).__name__,
+)
+def test_a_field_that_hardly_changes_has_no_curl(field: vv.forces.Force) -> None:
+    """Differences of equal values are their rounding, in all derivatives alike."""
+    found = vv.audit.curl(field, [[0.1, 0.2, 0.3], [1.3, -0.7, 0.4]])
+    assert found.conservative, found.relative
+
+
+@pytest.mark.parametrize("turning", [1e-3, 1e-6, 1e-9])
+def test_a_weak_curl_beside_a_uniform_field_is_seen(turning: float) -> None:
+    places = [[0.1, 0.2, 0.3], [1.3, -0.7, 0.4]]
+    straight = vv.audit.curl(lambda r: UNIFORM + turning * r, places)
+    around = vv.audit.curl(lambda r: UNIFORM + turning * np.stack([-r[:, 1], r[:, 0], 0.0 * r[:, 2]], axis=-1), places)
+    assert straight.conservative
+    assert not around.conservative
+    # Differences of 9.81 over some 1e-3 of the places: 1e-12.
+    np.testing.assert_allclose(around.value[:, 2], 2.0 * turning, rtol=0.0, atol=1e-11)
+
+
 def test_third_law_far_from_the_origin() -> None:
     """Places at 1e11 are rounded to 1e-5: that is no torque."""
     place = np.array([[1.5e11, 0.3, 0.0], [1.5e11 + 3.0, 1.7, -0.1]])

@@ -60,6 +60,43 @@ def test_what_was_wrong_once(case: tuple[object, ...], energy: float, b: float, 
         assert angle == pytest.approx(expected, abs=tolerance)
 
 
+#: Beside the highest energy with a circular orbit (0.8 ε of Lennard-Jones) little is left of what the angle is made of,
+#: at a minimum of ψ(b) too, where b itself may be off by more.
+BESIDE_THE_LAST_ORBIT = [
+    (("LennardJones", 1.0, 1.0), 0.8, 1.7543, 1.5),
+    (("Mie", 1.0, 1.0, 9.0, 6.0), 0.6612, 1.918, 1.5),
+    (("Morse", 1.0, 1.3, 1.5), 0.5185, 4.48, 3.5),
+]
+
+
+@pytest.mark.parametrize(("case", "highest", "b", "scale"), BESIDE_THE_LAST_ORBIT, ids=str)
+def test_errors_beside_the_last_orbit_are_told(
+    case: tuple[object, ...], highest: float, b: float, scale: float
+) -> None:
+    random = np.random.default_rng([8] + [ord(c) for c in str(case)])
+    energies = highest * (1.0 + random.choice([-1.0, 1.0], 24) * 10.0 ** random.uniform(-6.0, -1.0, 24))
+    impacts = b * (1.0 + random.choice([-1.0, 1.0], 24) * 10.0 ** random.uniform(-6.0, -1.5, 24))
+    potential = getattr(V, str(case[0]))(*case[1:])
+    found = s.deflect(potential, energy=energies, impact_parameter=impacts)
+    for at in np.flatnonzero(found.status != s.DeflectionStatus.CAPTURED):
+        r0 = float(found.closest_approach[at])
+        expected = oracle.angle(oracle.potential(*case), energies[at], impacts[at], r0)  # type: ignore[arg-type]
+        with mp.workdps(40):
+            off = abs(float(mp.mpf(float(found.angle[at])) - expected))
+        # By no more than it says and half a rounding of E and b does; which is little.
+        assert off <= found.error[at] + 0.5 * np.finfo(float).eps * found.conditioning[at]
+        assert off <= 1e-12 * scale + np.finfo(float).eps * found.conditioning[at]
+
+
+def test_the_lowest_angle_above_the_last_orbit() -> None:
+    """ψ of Lennard-Jones near its minimum at E just above 0.8: 3.5e-10 off once, where 6e-13 was told."""
+    known = {(0.8001, 1.7543): -15.354280774883781, (0.79, 1.7591): -15.045487406694388}
+    for (energy, b), expected in known.items():
+        found = s.deflect(V.LennardJones(1.0, 1.0), energy=energy, impact_parameter=b)
+        # What half a rounding of E and b makes.
+        assert float(found.angle) == pytest.approx(expected, abs=float(np.finfo(float).eps * found.conditioning))
+
+
 @pytest.mark.parametrize("case", oracle.CASES, ids=str)
 def test_loose_and_tight_tolerances_agree(case: tuple[object, ...]) -> None:
     """Fewer steps, judged by fewer numbers: nowhere further off than what was asked, and what rounding of b makes."""

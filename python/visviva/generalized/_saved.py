@@ -4,8 +4,9 @@ A file of version 1 holds ``header`` and arrays. The header has the system as th
 are the equations), a state of it, the method and the definitions of events; arrays are ``start`` (B, 2n) and
 ``parameters`` (B, P) of the copies, one of a single run; ``times`` (T,) that were asked for; ``t`` and ``y``, rows of
 all copies one after the other, ``lengths`` of them; ``status``, ``steps``, ``evaluations`` and ``longest_step`` of each
-copy; and what events found: ``found`` of each copy, ``events/which``, ``events/t`` and ``events/state``. No text of a
-file is ever evaluated. Every later version of visviva must load it: `tests/reference` keeps one.
+copy; what events found: ``found`` of each copy, ``events/which``, ``events/t`` and ``events/state``; and, but in the
+earliest files, ``last/t`` and ``last/state`` (B, 2n), where each copy's last step ended. No text of a file is ever
+evaluated. Every later version of visviva must load it: `tests/reference` keeps one.
 """
 
 from __future__ import annotations
@@ -74,6 +75,10 @@ _ARRAYS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "events/t": ("f8", ("E",)),
     "events/state": ("f8", ("E", "2n")),
 }
+_LAST: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "last/t": ("f8", ("B",)),
+    "last/state": ("f8", ("B", "2n")),
+}
 
 
 @known_keywords
@@ -125,13 +130,15 @@ class Saved:
             "method": method,
             "events": [_event(event) for event in looked_for],
         }
-        write(path, header, {name: np.asarray(arrays[name], dtype=dtype) for name, (dtype, _) in _ARRAYS.items()})
+        kept = {name: np.asarray(arrays[name], dtype=dtype) for name, (dtype, _) in (_ARRAYS | _LAST).items()}
+        write(path, header, kept)
 
 
 def _arrays_of_run(run: GeneralizedTrajectory) -> tuple[str, tuple[Event, ...], dict[str, Any]]:
     found, looked_for = run._found
     arrays = {name: [getattr(run, name)] for name in ("status", "steps", "evaluations", "longest_step")}
     arrays |= {"start": [run.system._start()], "parameters": [run.system._values], "lengths": [len(run.t)]}
+    arrays |= {"last/t": [run._last[0]], "last/state": [run._last[1]]}
     return run.method, looked_for, arrays | {"times": run.t, "t": run.t, "y": run._states} | _event_arrays(found)
 
 
@@ -139,6 +146,7 @@ def _arrays_of_ensemble(run: GeneralizedEnsembleTrajectory) -> tuple[str, tuple[
     result = run._result
     arrays = {name: result[name] for name in ("t", "y", "lengths", "steps", "evaluations", "longest_step")}
     arrays |= {"start": run.ensemble._states, "parameters": run.ensemble._parameters}
+    arrays |= {"last/t": result["last_t"], "last/state": result["last_y"]}
     asked = run._asked
     return asked["method"], asked["looked_for"], arrays | {"times": run.t, "status": run.status} | _event_arrays(result)
 
@@ -176,12 +184,25 @@ def run_from_file(
     result |= {"t": arrays["t"], "y": arrays["y"], "endings": [endings[Status(each)] for each in arrays["status"]]}
     result |= {"found_which": arrays["events/which"].tolist()}
     result |= {"found_t": arrays["events/t"], "found_y": arrays["events/state"]}
+    result |= _last(arrays, system.t0)
     asked = {"method": header["method"], "looked_for": _events(header["events"]), "outputs": arrays["times"]}
     if not header["ensemble"]:
         return GeneralizedTrajectory(system, result, asked)
     own = dict(zip(system.parameters, arrays["parameters"].T, strict=True))
     copies = GeneralizedEnsemble(system, arrays["start"][:, :n], arrays["start"][:, n:], own)
     return GeneralizedEnsembleTrajectory(copies, result, asked)
+
+
+def _last(arrays: dict[str, NDArray[Any]], t0: float) -> dict[str, Any]:
+    """Where the last steps ended; of files that do not tell, the last rows."""
+    if "last/t" in arrays:
+        return {"last_t": arrays["last/t"].tolist(), "last_y": arrays["last/state"]}
+    times, states = np.full(len(arrays["start"]), t0), arrays["start"].copy()
+    ends = np.cumsum(arrays["lengths"])
+    for member, (length, end) in enumerate(zip(arrays["lengths"], ends, strict=True)):
+        if length:
+            times[member], states[member] = arrays["t"][end - 1], arrays["y"][end - 1]
+    return {"last_t": times.tolist(), "last_y": states}
 
 
 def _check(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
@@ -192,6 +213,8 @@ def _check(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
     check_keys("account of the system", header["source"], _SOURCE)
     lengths: dict[str, int] = {}
     check_all(_ARRAYS, arrays, lengths)
+    if _LAST.keys() & arrays.keys():
+        check_all(_LAST, arrays, lengths)
     if not lengths["B"] or (not header["ensemble"] and lengths["B"] != 1):
         raise Damaged(f"the file has {lengths['B']} copies")
     for each, of in (("lengths", "rows"), ("found", "E")):

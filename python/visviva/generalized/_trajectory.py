@@ -96,6 +96,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
     __slots__ = (
         "_columns",
         "_found",
+        "_last",
         "_states",
         "evaluations",
         "longest_step",
@@ -116,6 +117,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
     _states: NDArray[np.float64]
     _columns: NDArray[np.float64] | None
     _found: tuple[dict[str, Any], tuple[Event, ...]]
+    _last: tuple[float, NDArray[np.float64]]
 
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
@@ -141,6 +143,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         self.longest_step = result["longest_step"][member]
         self.method = asked["method"]
         self._columns = None
+        self._last = (result["last_t"][member], result["last_y"][member])
         first = sum(result["found"][:member])
         own = slice(first, first + result["found"][member])
         found = {name: result[name][own] for name in ("found_which", "found_t", "found_y")}
@@ -207,7 +210,9 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
 
     @property
     def final(self) -> GeneralizedSystem:
-        """The system at the last time, or at the event that ended the run, ready to run on.
+        """The system at the last time, or where the run ended before: ready to run on.
+
+        That is at the event that stopped it or, of a run that was interrupted or failed, at the end of its last step.
 
         Examples
         --------
@@ -215,15 +220,18 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
         >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
         >>> out.final.t0, bool((out.final.position == out.position[-1]).all())
         (1.0, True)
+        >>> try:
+        ...     vv.systems.pendulum(position=[0.5]).run(t=1e4, max_steps=100)
+        ... except vv.ConvergenceError as error:
+        ...     error.trajectory.final.t0 > 10.0
+        True
         """
         n = len(self.system.coordinates)
         if self.status is Status.STOPPED:
             found, _ = self._found
             last, t0 = found["found_y"][-1], float(found["found_t"][-1])
-        elif len(self.t):
-            last, t0 = self._states[-1], float(self.t[-1])
         else:
-            raise InvalidInput("final", "the run has no state")
+            t0, last = self._last
         return self.system._at(last[:n], last[n:], t0=t0)
 
     def conservation(self) -> dict[str, float]:

@@ -121,10 +121,11 @@ pub fn solve_together(
         Err(Error::Interrupted) => run.interrupt(),
         Err(error) => return Err(error),
     }
-    let untouched = |solution: Option<Solution>| {
-        solution.unwrap_or_else(|| Solution { ending: Ending::Interrupted, ..Solution::at(request.span.0) })
+    let untouched = |(index, solution): (usize, Option<Solution>)| {
+        let begun = || Solution::at(request.span.0, member(index).0);
+        solution.unwrap_or_else(|| Solution { ending: Ending::Interrupted, ..begun() })
     };
-    Ok(run.done.into_iter().map(untouched).collect())
+    Ok(run.done.into_iter().enumerate().map(untouched).collect())
 }
 
 impl<'a> Abreast<'a> {
@@ -217,7 +218,7 @@ impl<'a> Abreast<'a> {
                 }
             }
             fresh = fresh.or(Bits(1 << lane));
-            let solution = Solution::at(t0);
+            let solution = Solution::at(t0, y0);
             let (from, before) = (t0, self.system.evaluations());
             let sticking = Sticking::new(self.model, parameters, t0);
             let poles = Poles::new(self.model, parameters, t0, y0);
@@ -250,16 +251,10 @@ impl<'a> Abreast<'a> {
         let kept = self.judge(&outcome, running, ticker);
         let kept = self.short_of_poles(kept, ticker);
         self.record(&outcome, kept, ticker)?;
+        self.look_for_rest(kept, ticker);
         self.trial.keep(kept, &mut self.state);
-        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
-            let state = &self.state;
-            let Some(slot) = self.slots[lane].as_mut().filter(|slot| !slot.sticking.is_empty()) else {
-                continue;
-            };
-            let y: Vec<f64> = state.all().0.iter().map(|y| y.0[lane]).collect();
-            if let Err(Error::Convergence { message, .. }) = slot.sticking.look(slot.solution.reached, &y) {
-                self.end(lane, Ending::StepTooSmall, Some(message), ticker);
-            }
+        for (_, slot) in self.in_lanes(kept) {
+            slot.solution.last_time = slot.solution.reached;
         }
         for lane in 0..WIDTH {
             if outcome.finished.and(kept).lane(lane) {
@@ -285,6 +280,22 @@ impl<'a> Abreast<'a> {
             short = short.or(Bits(1 << lane));
         }
         short
+    }
+
+    /// Ends those lanes of these in which friction holds what the step came to.
+    fn look_for_rest(&mut self, kept: Bits, ticker: &mut Ticker<'_>) {
+        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
+            let next = self.trial.next();
+            let Some(slot) = self.slots[lane].as_mut().filter(|slot| !slot.sticking.is_empty()) else {
+                continue;
+            };
+            let y: Vec<f64> = next.all().0.iter().map(|y| y.0[lane]).collect();
+            if let Err(Error::Convergence { message, .. }) =
+                slot.sticking.look(slot.solution.reached, &y, self.request.dt)
+            {
+                self.end(lane, Ending::StepTooSmall, Some(message), ticker);
+            }
+        }
     }
 
     /// The slots in the lanes of a mask.
@@ -367,19 +378,27 @@ impl<'a> Abreast<'a> {
         kept
     }
 
-    /// Ends a trajectory.
+    /// Ends a trajectory, and tells so.
     fn end(&mut self, lane: usize, ending: Ending, failure: Option<String>, ticker: &mut Ticker<'_>) {
-        let Some(Slot { index, mut solution, .. }) = self.slots[lane].take() else { return };
-        solution.ending = ending;
-        solution.failure = failure.or_else(|| ending.reason());
-        self.done[index] = Some(solution);
+        self.settle(lane, ending, failure);
         ticker.advance(1);
     }
 
     /// Ends all that run where they are.
     fn interrupt(&mut self) {
-        for slot in self.slots.iter_mut().filter_map(Option::take) {
-            self.done[slot.index] = Some(Solution { ending: Ending::Interrupted, ..slot.solution });
+        for lane in 0..WIDTH {
+            self.settle(lane, Ending::Interrupted, None);
         }
+    }
+
+    /// Puts away what a trajectory has come to, if there is one in the lane.
+    fn settle(&mut self, lane: usize, ending: Ending, failure: Option<String>) {
+        let Some(Slot { index, mut solution, .. }) = self.slots[lane].take() else { return };
+        solution.ending = ending;
+        solution.failure = failure.or_else(|| ending.reason());
+        for (last, y) in solution.last_state.iter_mut().zip(self.state.all().0) {
+            *last = y.0[lane];
+        }
+        self.done[index] = Some(solution);
     }
 }

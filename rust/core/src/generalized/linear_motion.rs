@@ -125,7 +125,7 @@ impl LinearMotion {
         let mut flow = self.flow(parameters, request.span)?;
         let mut start = y0.to_vec();
         start.push(1.0);
-        let mut solution = Solution::at(t0);
+        let mut solution = Solution::at(t0, y0);
         let mut stop = None;
         if !request.events.is_empty() {
             let mut watch = Watch::new(&request.events, parameters);
@@ -162,7 +162,8 @@ impl LinearMotion {
             }
             solution.t.push(t);
             solution.y.extend(&state[..y0.len()]);
-            solution.reached = t;
+            (solution.reached, solution.last_time) = (t, t);
+            solution.last_state.copy_from_slice(&state[..y0.len()]);
         }
         if let Some(stop) = stop {
             (solution.ending, solution.reached) = (Ending::Stopped, stop);

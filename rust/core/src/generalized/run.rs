@@ -85,6 +85,10 @@ pub struct Solution {
     pub t: Vec<f64>,
     /// States there, one after another.
     pub y: Vec<f64>,
+    /// The end of the last step that was kept, from where one may go on, …
+    pub last_time: f64,
+    /// … and the state there.
+    pub last_state: Vec<f64>,
     /// Steps that were kept.
     pub steps: u64,
     /// Evaluations.
@@ -155,8 +159,10 @@ impl Request {
 
 impl Solution {
     /// Of a run that has not begun.
-    pub(super) fn at(t0: f64) -> Self {
+    pub(super) fn at(t0: f64, y0: &[f64]) -> Self {
         Self {
+            last_time: t0,
+            last_state: y0.to_vec(),
             ending: Ending::Finished,
             failure: None,
             reached: t0,
@@ -208,7 +214,7 @@ fn solve_within(
     let mut table = Table::new(request.outputs.as_deref(), false, None, Unwatched::new(vec![]));
     if t0 == end {
         table.still(request.span, y0)?;
-        return Ok(Solution { reached: end, t: table.t, y: table.y, ..Solution::at(t0) });
+        return Ok(Solution { reached: end, t: table.t, y: table.y, ..Solution::at(t0, y0) });
     }
     let watch = Watch::new(&request.events, parameters);
     let mut projector = model.projection.as_ref().map(|projection| {
@@ -225,8 +231,10 @@ fn solve_within(
         poles,
         passed: None,
         steps: 0,
-        last: 0.0,
+        longest: 0.0,
         reached: t0,
+        kept: t0,
+        equal: request.dt,
         most,
         beyond: false,
     };
@@ -284,10 +292,21 @@ fn solve_within(
         }
         Err(error) => return Err(error),
     };
-    let Counted { table, watch, steps, last, reached, .. } = recorder;
+    let Counted { table, watch, steps, longest, reached, kept, .. } = recorder;
     let Table { t, y, .. } = table;
-    let evaluations = system.evaluations() + own;
-    Ok(Solution { ending, failure, reached, t, y, steps, evaluations, h: last, found: watch.found })
+    Ok(Solution {
+        ending,
+        failure,
+        reached,
+        t,
+        y,
+        last_time: kept,
+        last_state: state.all().0.to_vec(),
+        steps,
+        evaluations: system.evaluations() + own,
+        h: longest,
+        found: watch.found,
+    })
 }
 
 /// A table that counts steps.
@@ -299,10 +318,14 @@ struct Counted<'a> {
     /// The length of the step that went through a pole.
     passed: Option<f64>,
     steps: u64,
-    /// The longest step.
-    last: f64,
+    /// The longest of them.
+    longest: f64,
     /// Where the last one ended, or could not be read.
     reached: f64,
+    /// Where the last one ended that was kept.
+    kept: f64,
+    /// How long all steps are, if they are alike.
+    equal: Option<f64>,
     /// The most steps.
     most: u64,
     /// Whether there was one more.
@@ -325,7 +348,7 @@ impl Recorder for Counted<'_> {
         if !self.poles.is_empty() {
             self.poles.look(step.to, step.end()).inspect_err(|_| self.passed = Some(length))?;
         }
-        self.last = if length > self.last { length } else { self.last };
+        self.longest = if length > self.longest { length } else { self.longest };
         let stop = self.watch.look(&mut Stepped(step))?;
         self.reached = stop.unwrap_or(step.to);
         self.table.keep(step, stop).inspect_err(|_| {
@@ -333,8 +356,9 @@ impl Recorder for Counted<'_> {
             self.reached = self.table.next_output().unwrap_or(self.reached);
         })?;
         if stop.is_none() && !self.sticking.is_empty() {
-            self.sticking.look(step.to, step.end())?;
+            self.sticking.look(step.to, step.end(), self.equal)?;
         }
+        self.kept = step.to;
         Ok(stop)
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! The one idea: on both sides of the leap the rates point back to it (A. F. Filippov, *Differential Equations with Discontinuous
 //! Righthand Sides*, section 4), so from step to step the velocity changes its sign, each time heading back. One that passes
-//! through zero heads on.
+//! through zero heads on. Equal steps are too long for that, their stages lie on both sides, and what is held would creep:
+//! where the next of them would reach the leap, the rates on both sides of it are asked.
 
 use super::model::Model;
 use super::structure::Structure;
@@ -15,6 +16,8 @@ const RETURNS: u32 = 4;
 /// Steps without one after which nothing sticks; and the part of the time since the start that returns are apart at most.
 const STEPS_BETWEEN: u32 = 200;
 const APART: f64 = 1e-6;
+/// So near to the leap its sides are looked at, as a part of the velocity or of what a step changes it by.
+const BESIDE: f64 = 1e-9;
 
 /// What ends a run there.
 const STUCK: &str = "a velocity sticks at zero, where an absolute value of it turns: on both sides its forces, as dry friction, point \
@@ -47,6 +50,36 @@ struct Switch {
     at: f64,
 }
 
+impl Switch {
+    /// Whether a step of length `h` would come to the leap, and the rates on both sides of it point back.
+    fn holds(&mut self, t: f64, y: &[f64], h: f64) -> bool {
+        let (value, rate) = along(&mut self.machine, t, y);
+        // It leads away from it, or not so far.
+        if value * rate > 0.0 || value.abs() > h * rate.abs() {
+            return false;
+        }
+        let n = y.len() / 2;
+        let mut moved = y.to_vec();
+        let slopes: Vec<f64> = (n..y.len())
+            .map(|i| {
+                moved[i] = y[i] + 1.0;
+                let (there, _) = along(&mut self.machine, t, &moved);
+                moved[i] = y[i];
+                there - value
+            })
+            .collect();
+        let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+        let beside = BESIDE * if value == 0.0 { h * rate.abs() } else { value.abs() };
+        let mut rate_at = |wanted: f64| {
+            for (i, slope) in slopes.iter().enumerate() {
+                moved[n + i] = y[n + i] + (wanted - value) * slope / square;
+            }
+            along(&mut self.machine, t, &moved).1
+        };
+        rate_at(beside) < 0.0 && rate_at(-beside) > 0.0
+    }
+}
+
 /// All of a trajectory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sticking {
@@ -69,12 +102,15 @@ impl Sticking {
         self.switches.is_empty()
     }
 
-    /// Looks at the end of a step.
+    /// Looks at the end of a step; of one as long as all others at what the next will come to.
     ///
     /// # Errors
     /// [`Error::Convergence`] where a velocity sticks.
-    pub(super) fn look(&mut self, t: f64, y: &[f64]) -> Result<()> {
+    pub(super) fn look(&mut self, t: f64, y: &[f64], equal: Option<f64>) -> Result<()> {
         for switch in &mut self.switches {
+            if equal.is_some_and(|h| switch.holds(t, y, h.abs())) {
+                return Err(Error::Convergence { message: STUCK.to_owned(), time: t });
+            }
             let (value, rate) = along(&mut switch.machine, t, y);
             let (before, rate_before) = core::mem::replace(&mut switch.last, (value, rate));
             switch.steps += 1;

@@ -160,6 +160,8 @@ pub trait Potential: Debug + Send + Sync {
     fn lengths(&self) -> Vec<f64>;
     /// V(r) and −dV/dr to about thirty digits.
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble);
+    /// The first of them.
+    fn precise_value(&self, r: DoubleDouble) -> DoubleDouble;
     /// The same potential in other units.
     fn scaled(&self, units: Units) -> Arc<dyn Potential>;
     /// The same potential in that unit of length and one of energy in which its strength is near one, and the exponent of
@@ -273,6 +275,9 @@ impl<P: Formula> Potential for Held<P> {
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let own = &self.formula.numbers().map(DoubleDouble::from);
         (self.formula.value(own, r), self.formula.force(own, r))
+    }
+    fn precise_value(&self, r: DoubleDouble) -> DoubleDouble {
+        self.formula.value(&self.formula.numbers().map(DoubleDouble::from), r)
     }
     fn scaled(&self, units: Units) -> Arc<dyn Potential> {
         let values = P::DECLARATION.scaled(&self.values, units);

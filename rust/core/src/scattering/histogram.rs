@@ -138,17 +138,30 @@ impl Lookup {
 pub struct Steps {
     lookup: Lookup,
     slots: Vec<usize>,
+    /// How many counters each piece has.
+    banks: usize,
 }
 
 impl Steps {
-    /// Counters per piece, used in turn: neighbouring events of one piece do not wait for each other.
-    pub const BANKS: usize = 4;
+    /// Counters per piece of one that is alone, used in turn: neighbouring events of one piece do not wait for each other.
+    const BANKS: usize = 4;
+    /// Cells per piece of one that is alone, whose table stays in the nearest cache: draws are uniform, and a comparison
+    /// fails once in 60 events or so.
+    const CELLS_ALONE: usize = 32;
+    /// And of many that are looked at by turns: a comparison that fails costs less than a table that is far away.
+    const CELLS_TOGETHER: usize = 4;
 
-    /// For a slot of each draw that rises or falls between the `turning` ones, which increase.
+    /// For a slot of each draw that rises or falls between the `turning` ones, which increase; to be looked at alone, or by
+    /// turns with others.
     ///
     /// # Errors
     /// `Interrupted`: each of many edges takes some ten evaluations.
-    pub fn new(turning: &[u64], function: &impl Stepping, ticker: &mut Ticker<'_>) -> Result<Self> {
+    pub fn new(
+        turning: &[u64],
+        function: &impl Stepping,
+        alone: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
         let mut starts = vec![0];
         let ends = turning.iter().copied().chain([DRAWS]);
         for (from, to) in [0].into_iter().chain(turning.iter().copied()).zip(ends) {
@@ -164,28 +177,28 @@ impl Steps {
         let mut before = None;
         let (starts, slots): (Vec<u64>, Vec<usize>) =
             starts.into_iter().zip(slots).filter(|(_, slot)| before.replace(*slot) != Some(*slot)).unzip();
-        // Draws are uniform: with 32 cells per piece a comparison fails once in 60 events or so.
-        Ok(Self { lookup: Lookup::new(starts, 32), slots })
+        let (cells, banks) = if alone { (Self::CELLS_ALONE, Self::BANKS) } else { (Self::CELLS_TOGETHER, 1) };
+        Ok(Self { lookup: Lookup::new(starts, cells), slots, banks })
     }
     /// How many pieces.
     pub fn pieces(&self) -> usize {
         self.slots.len()
     }
     /// Room to count in.
-    pub fn counters(&self) -> Vec<[u64; Self::BANKS]> {
-        vec![[0; Self::BANKS]; self.pieces()]
+    pub fn counters(&self) -> Vec<u64> {
+        vec![0; self.pieces() * self.banks]
     }
-    /// Counts draws in counters from [`Steps::counters`].
+    /// Counts draws in counters from [`Steps::counters`], of one that is alone.
     ///
     /// # Panics
     /// For the counters of another histogram: a defect of the caller.
     #[inline]
-    pub fn count(&self, draws: &[Draw], counters: &mut [[u64; Self::BANKS]]) {
-        assert!(counters.len() == self.pieces(), "counters of another histogram");
+    pub fn count(&self, draws: &[Draw], counters: &mut [u64]) {
+        assert!(counters.len() == self.pieces() * Self::BANKS, "counters of another histogram");
         let mut one = |draw: Draw, bank: usize| {
             let piece = self.lookup.find(draw);
-            // SAFETY: a draw is found in an interval, and there are as many counters as intervals.
-            unsafe { counters.get_unchecked_mut(piece)[bank] += 1 };
+            // SAFETY: a draw is found in an interval, and there are so many times as many counters as intervals.
+            unsafe { *counters.get_unchecked_mut(piece * Self::BANKS + bank) += 1 };
         };
         let (fours, rest) = draws.as_chunks::<{ Self::BANKS }>();
         for four in fours {
@@ -197,19 +210,14 @@ impl Steps {
             one(*draw, 0);
         }
     }
-    /// Counts draws, each by the step function of its component.
+    /// Counts draws, each by the step function of its component, which have one counter for each piece.
     ///
     /// # Panics
     /// For counters of others, or a component that there is not: a defect of the caller.
-    pub fn count_mixed(
-        steps: &[Self],
-        components: &[u32],
-        draws: &[Draw],
-        counters: &mut [Vec<[u64; Self::BANKS]>],
-    ) {
-        for (event, (draw, component)) in draws.iter().zip(components).enumerate() {
+    pub fn count_mixed(steps: &[Self], components: &[u32], draws: &[Draw], counters: &mut [Vec<u64>]) {
+        for (draw, component) in draws.iter().zip(components) {
             let (steps, counters) = (&steps[*component as usize], &mut counters[*component as usize]);
-            counters[steps.lookup.find(*draw)][event % Self::BANKS] += 1;
+            counters[steps.lookup.find(*draw)] += 1;
         }
     }
     /// The part of all draws that falls into each slot, so many times, is added to the slots of the histogram.
@@ -220,8 +228,8 @@ impl Steps {
         }
     }
     /// Adds counters to the slots of the histogram.
-    pub fn collect(&self, counters: &[[u64; Self::BANKS]], slots: &mut [u64]) {
-        for (slot, banks) in self.slots.iter().zip(counters) {
+    pub fn collect(&self, counters: &[u64], slots: &mut [u64]) {
+        for (slot, banks) in self.slots.iter().zip(counters.chunks_exact(self.banks)) {
             slots[*slot] += banks.iter().sum::<u64>();
         }
     }

@@ -167,7 +167,7 @@ pub fn expected(
     }
     check_size(mixture, tallies)?;
     let differ = differ(tallies);
-    let steps = steps(mixture, tallies, differ, threads, ticker)?;
+    let steps = steps(mixture, tallies, (differ, false), threads, ticker)?;
     let of_beam = |(line, beam): (f64, &Beam)| -> Vec<f64> {
         if differ { beam.channels().parts().map(|exit| line * exit).collect() } else { vec![line] }
     };
@@ -212,18 +212,19 @@ struct Stepped {
 }
 
 /// Of each tally, for each component and channel; of events that are counted one by one for all of them together.
-type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
+type Counters = Vec<Vec<Vec<u64>>>;
 
 /// Whether anything is counted in which channels differ: if not, nobody looks at which one an event goes through.
 fn differ(tallies: &[Tally]) -> bool {
     tallies.iter().flat_map(Tally::axes).any(|(quantity, _)| quantity.is_of_channel())
 }
 
-/// Of each tally, for each component and each channel of it, or all channels as one where they do not differ.
+/// Of each tally, for each component and each channel of it, or all channels as one where they do not differ; looked at
+/// alone, or by turns.
 fn steps(
     mixture: &Mixture,
     tallies: &[Tally],
-    differ: bool,
+    (differ, alone): (bool, bool),
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Vec<Steps>>> {
@@ -231,10 +232,7 @@ fn steps(
     let of: Vec<(&Beam, usize)> =
         mixture.beams().flat_map(|beam| (0..exits(beam)).map(move |exit| (beam, exit))).collect();
     let of_tally = |tally: &Tally| {
-        for_chunks(threads, of.len(), ticker, |index, ticker| {
-            let (beam, exit) = of[index];
-            tally.steps(beam, exit, ticker)
-        })
+        for_chunks(threads, of.len(), ticker, |index, ticker| tally.steps(of[index], alone, ticker))
     };
     tallies.iter().map(of_tally).collect()
 }
@@ -253,8 +251,10 @@ impl<'a> Program<'a> {
         }
         let (channel, channels) =
             told.filter(|_| differ).map_or((None, 1), |channels| (channels.lookup(), channels.count()));
-        let steps = steps(mixture, tallies, differ, threads, ticker)?;
-        Ok(Self::Steps(Stepped { component: mixture.lookup(), channel, channels, steps }))
+        let component = mixture.lookup();
+        let alone = component.is_none() && channel.is_none();
+        let steps = steps(mixture, tallies, (differ, alone), threads, ticker)?;
+        Ok(Self::Steps(Stepped { component, channel, channels, steps }))
     }
     fn counters(&self) -> Counters {
         match self {
@@ -263,7 +263,7 @@ impl<'a> Program<'a> {
             }
             Self::Drawn(mixture, tallies) => {
                 let strata = mixture.histograms();
-                tallies.iter().map(|tally| vec![vec![[0; Steps::BANKS]; tally.slots() * strata]]).collect()
+                tallies.iter().map(|tally| vec![vec![0; tally.slots() * strata]]).collect()
             }
         }
     }
@@ -299,8 +299,8 @@ impl<'a> Program<'a> {
             }
             Self::Drawn(..) => {
                 for (counters, counts) in counters.iter().zip(counts) {
-                    for (banks, count) in counters.iter().flatten().zip(counts) {
-                        *count += banks.iter().sum::<u64>();
+                    for (counter, count) in counters.iter().flatten().zip(counts) {
+                        *count += counter;
                     }
                 }
             }
@@ -355,7 +355,7 @@ fn follow(mixture: &Mixture, tallies: &[Tally], seed: u64, events: Range<u64>, c
         for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
             let slot = tally.slot_of(beam, &arrival, half);
             if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
-                counter[0] += 1;
+                *counter += 1;
             }
         }
     }

@@ -113,6 +113,9 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
     let failures: Vec<Option<&str>> = solutions.iter().map(|solution| solution.failure.as_deref()).collect();
     result.set_item("failures", failures)?;
     result.set_item("reached", solutions.iter().map(|solution| solution.reached).collect::<Vec<_>>())?;
+    let last: Vec<f64> = solutions.iter().flat_map(|solution| solution.last_state.iter().copied()).collect();
+    result.set_item("last_y", moved(py, last, &[solutions.len(), numbers])?)?;
+    result.set_item("last_t", solutions.iter().map(|solution| solution.last_time).collect::<Vec<_>>())?;
     result.set_item("steps", solutions.iter().map(|solution| solution.steps).collect::<Vec<_>>())?;
     result
         .set_item("evaluations", solutions.iter().map(|solution| solution.evaluations).collect::<Vec<_>>())?;

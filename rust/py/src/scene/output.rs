@@ -235,7 +235,7 @@ fn status(ending: &Ending) -> i8 {
     match ending {
         Ending::Finished => 0,
         Ending::CloseEncounter { .. } => 1,
-        Ending::NoStep | Ending::NotFinite => 2,
+        Ending::NoStep | Ending::NotFinite | Ending::Sticking { .. } => 2,
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
@@ -257,6 +257,14 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
                       give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
                       them, or set max_step); under a time transformation, that dt is too long"
                 .to_owned(),
+            time,
+        }),
+        Ending::Sticking { body } => Some(Error::Convergence {
+            message: format!(
+                "the velocity of body {body} sticks at zero: on both sides of it a force, as of dry friction, points back, \
+                 and no step gets past that. It stays there while the other forces are weaker, which the force does not \
+                 tell; end the run before (an event of the velocity), or write v·tanh(|v|/width)/|v| for v/|v|"
+            ),
             time,
         }),
         Ending::NotFinite if chosen => Some(Error::Convergence {

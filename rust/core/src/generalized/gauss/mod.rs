@@ -80,7 +80,8 @@ impl Method {
 
     /// Steps that are chosen for a relative tolerance, and held or not.
     pub fn chosen(&self, rtol: f64, held: bool) -> Steps {
-        Steps::Chosen { tolerance: rtol, delta: self.table.delta(rtol), held }
+        let (delta, band) = self.table.delta(rtol);
+        Steps::Chosen { tolerance: rtol, delta, band, held }
     }
 
     /// Whether its stages are fewer than the lanes.

@@ -13,8 +13,10 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::real::Real;
 use crate::ode::system::Form;
 
-/// A step is taken again when δ is this many times what it should be …
+/// A step of order 16, as good as exact, is taken again when δ is this many times what it should be, …
 const BAND: f64 = 30.0;
+/// … one of a lower order, where it is what belongs to the tolerance, …
+const BAND_OF_FEW: f64 = 4.0;
 /// … or this: as much as that is only what stages have not followed.
 const NOT_FOLLOWED: f64 = 0.2;
 /// What δ is to be at most.
@@ -44,6 +46,8 @@ pub enum Steps {
         tolerance: f64,
         /// What δ is to be.
         delta: f64,
+        /// And how many times as much at most.
+        band: f64,
         /// Whether a step is held.
         held: bool,
     },
@@ -80,22 +84,22 @@ impl Pace {
     pub(super) fn refuses(&self, steps: Steps, ending: &Ending) -> bool {
         match steps {
             Steps::Equal(_) => !self.converged,
-            Steps::Chosen { tolerance, delta, .. } => {
+            Steps::Chosen { tolerance, delta, band, .. } => {
                 // It passes through zero at times.
                 let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
-                !self.converged || self.strays(delta) || ending.met(self.missed, astray, tolerance)
+                !self.converged || self.strays(delta, band) || ending.met(self.missed, astray, tolerance)
             }
         }
     }
 
     /// Whether it is to be asked how much a step misses: of one that δ does not refuse.
     pub(super) fn missable(&self, steps: Steps) -> bool {
-        matches!(steps, Steps::Chosen { delta, .. } if self.converged && !self.strays(delta))
+        matches!(steps, Steps::Chosen { delta, band, .. } if self.converged && !self.strays(delta, band))
     }
 
     /// Whether δ is out of the band.
-    fn strays(&self, target: f64) -> bool {
-        self.delta > Real::min(BAND * target, NOT_FOLLOWED)
+    fn strays(&self, target: f64, band: f64) -> bool {
+        self.delta > Real::min(band * target, NOT_FOLLOWED)
     }
 
     /// What is left of the sizes of numbers in a step of length `h` after a kept one of length `last`.
@@ -118,9 +122,9 @@ impl Pace {
 
     /// The next step after one of length `h` that is kept.
     pub(super) fn after(&mut self, h: f64, (steps, longest): (Steps, f64), table: &Table) -> f64 {
-        let Steps::Chosen { delta: target, held, .. } = steps else { return h };
+        let Steps::Chosen { delta: target, band, held, .. } = steps else { return h };
         self.lately = Real::max(self.delta, LATELY * self.lately);
-        self.holding &= !self.strays(target);
+        self.holding &= !self.strays(target, band);
         if self.holding {
             return h;
         }
@@ -146,7 +150,7 @@ impl Pace {
     pub(super) fn instead_of(&mut self, h: f64, steps: Steps, table: &Table) -> f64 {
         self.holding = false;
         match steps {
-            Steps::Chosen { delta, .. } if self.converged && self.strays(delta) => {
+            Steps::Chosen { delta, band, .. } if self.converged && self.strays(delta, band) => {
                 h * Real::max(self.factor(delta, table), 0.2)
             }
             _ => h * 0.4,
@@ -181,14 +185,14 @@ pub(super) fn first_step(
 }
 
 impl Table {
-    /// What δ is to be for a relative tolerance of a step.
+    /// What δ is to be for a relative tolerance of a step, and how many times as much it may be.
     ///
     /// Of order 16 it goes with the root of the tolerance, and steps are as good as exact long before. Of the others a unit
     /// oscillation tells: a turn by x errs by C x²ˢ⁺¹, the error of the diagonal Padé approximation of the exponential function
     /// (E. Hairer & G. Wanner, *Solving Ordinary Differential Equations II*, theorem IV.3.11), and leads D xˢ⁺¹ astray.
-    pub(super) fn delta(&self, rtol: f64) -> f64 {
+    pub(super) fn delta(&self, rtol: f64) -> (f64, f64) {
         if self.stages == WIDTH {
-            return (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2);
+            return ((100.0 * rtol.sqrt()).clamp(1e-5, 3e-2), BAND);
         }
         let s = self.stages as f64;
         let factorial = |n: usize| (1..=n).fold(1.0, |product, k| product * k as f64);
@@ -198,7 +202,8 @@ impl Table {
         let astray = self.c.0[..self.stages].iter().fold(1.0 / once, |product, c| product * (farthest - c));
         let turn = Exponential::exp(elementary::ln(rtol / error) * ((s + 1.0) / (2.0 * s + 1.0)));
         // By more than a radian no step is to turn.
-        Real::min(if turn < 1.0 { astray * turn } else { astray }, FOLLOWED)
+        let most = Real::min(if turn < 1.0 { astray * turn } else { astray }, FOLLOWED);
+        (most / BAND_OF_FEW, BAND_OF_FEW)
     }
 
     /// The leading term of the polynomial through the stages, at the farthest stage of a next step.

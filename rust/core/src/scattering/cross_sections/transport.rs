@@ -2,6 +2,7 @@
 //!
 //! The one idea: every integrand is smooth in the logarithm of the distance to an edge, since near orbiting ψ is linear
 //! in it, and in the logarithm of b far out. So intervals go by those, and are halved, all at once, where two rules differ.
+//! Beyond the last of them ψ is a power of b, of which the integral is known.
 
 use super::super::deflection::{Deflector, Edge, Status};
 use super::super::kronrod::{self, POINTS};
@@ -169,6 +170,7 @@ fn transport_to(
             break;
         }
     }
+    done.push(beyond(deflector, energy, l, ticker)?);
     for part in done {
         sum += part.value;
         error += part.off + part.noise;
@@ -182,6 +184,36 @@ fn transport_to(
         return Err(Error::invalid("energy", message));
     }
     Ok(2.0 * PI * sum)
+}
+
+/// How far a power of V may be rounded.
+const ROUNDED_POWER: f64 = 16.0 * f64::EPSILON;
+
+/// What is left beyond the farthest interval, where V = k/rⁿ and ψ goes as 1/bⁿ: nothing of most potentials, all but a little
+/// where n is near one.
+fn beyond(deflector: &Deflector, energy: f64, l: u32, ticker: &mut Ticker<'_>) -> Result<Part> {
+    let nothing = Part { value: 0.0, off: 0.0, noise: 0.0 };
+    if deflector.range() < f64::INFINITY {
+        return Ok(nothing);
+    }
+    let ends = outermost(deflector, energy, &deflector.edges(energy));
+    let b = Way::Far(deflector.length(energy)).at(ends[1]).b;
+    let over = deflector.power_at(b) - 1.0;
+    let found = deflector.deflect(&[energy], &[b], false, 1, ticker)?;
+    let Some(found) = found.first().filter(|found| over > 0.0 && found.angle != 0.0) else {
+        return Ok(nothing);
+    };
+    let value = less_than_one(found.angle, l) * b * b / (2.0 * over);
+    let noise = value * (ROUNDED_POWER / over + 2.0 * found.error / found.angle.abs());
+    Ok(Part { value, off: 0.0, noise })
+}
+
+/// The ends of the part of the line that has none, as logarithms of the length.
+fn outermost(deflector: &Deflector, energy: f64, edges: &[Edge]) -> [f64; 2] {
+    let length = deflector.length(energy);
+    let last = edges.iter().map(|edge| edge.impact_parameter).fold(0.0, f64::max);
+    let from = ln((last + length) / length);
+    [from, from + FARTHEST]
 }
 
 /// Intervals between edges, towards them and far out.
@@ -230,8 +262,8 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
                 add(Way::Beside(high), 0.0, Exponential::exp(nearest));
             }
         } else {
-            let from = ln(middle / length);
-            add(Way::Far(length), from, from + FARTHEST);
+            let [from, to] = outermost(deflector, energy, edges);
+            add(Way::Far(length), from, to);
         }
     }
     all

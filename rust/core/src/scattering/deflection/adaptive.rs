@@ -7,7 +7,7 @@
 
 use super::comparison::Comparison;
 use super::delay_tail::DelayTail;
-use super::integrands;
+use super::integrands::{self, Subject};
 use super::nodes::Node;
 use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
@@ -31,6 +31,10 @@ const NEAR: f64 = 0.25;
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// By what part of b the distance to a barrier is uncertain: as b is, …
+const UNCERTAIN: f64 = f64::EPSILON;
+/// … or by what rounding leaves of it where V has no more digits than that.
+const BLURRED: f64 = 64.0 * f64::EPSILON;
 /// What halving cannot mend, in units of what the rounding of distances does.
 const NOISE: f64 = 4.0 * f64::EPSILON;
 /// Where V ends softly beside the turning point, what it lost there falls as 1/w² from a peak that no point of a long interval
@@ -47,6 +51,7 @@ const FARTHEST: f64 = 750.0;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) energy: f64,
+    pub(super) impact_parameter: f64,
     pub(super) turning: f64,
     /// V(r₀)/E and r₀F(r₀)/E.
     pub(super) value: f64,
@@ -57,9 +62,15 @@ pub(super) struct Pair {
     pub(super) curvature: f64,
     /// Up to this w the mean of the force tells what V loses.
     pub(super) near: f64,
+    /// How near b is to where a barrier has its top, as a part of it.
+    pub(super) nearness: f64,
 }
 
 impl Pair {
+    /// What the terms of G are rounded by.
+    pub(super) fn rounding(&self) -> f64 {
+        ROUNDING * (self.value.abs() + 0.5 * self.force.abs())
+    }
     /// What the rounding of distances leaves of each integral, however fine the intervals: each r is off by half a unit, so
     /// that V/E is by that times rF/E, and rF/E by that times r²V″/E. Where V ends softly both are large against V.
     fn noise(&self, integrand: Integrand) -> [f64; INTEGRALS] {
@@ -108,6 +119,8 @@ struct Interval {
     integral: [f64; INTEGRALS],
     error: [f64; INTEGRALS],
     size: [f64; INTEGRALS],
+    /// What a rounding of V makes of the first, twice that.
+    rounded: f64,
     /// How often in a row halving has not made less of each error, nor changed the integral: it is rounding.
     stuck: [u8; INTEGRALS],
 }
@@ -135,12 +148,16 @@ pub(super) fn integrate(
     pair: &Pair,
     integrand: Integrand,
     ends: &[f64],
-    (tolerance, wanted): (f64, usize),
+    (tolerance, refined): (f64, bool),
+    wanted: usize,
 ) -> Whole {
+    let tolerance = tolerance.max(UNCERTAIN / pair.nearness);
+    let subject = Subject::new(profile, pair, (tolerance, refined));
+    let blurred = BLURRED / pair.nearness;
+    let tolerance = if blurred > tolerance && subject.precise().is_none() { blurred } else { tolerance };
     let mut known = [0.0; INTEGRALS];
-    let comparison = Comparison::of(pair.value, pair.root);
     if integrand == Integrand::Deflection {
-        known[0] = comparison.closed;
+        known[0] = subject.comparison.closed;
     }
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
@@ -150,9 +167,9 @@ pub(super) fn integrate(
         known[INTEGRALS - 1] = tail.rest;
     }
     let end = marks[marks.len() - 1];
-    let whole = |sum: [f64; INTEGRALS], error: f64, size: f64| Whole {
-        integral: core::array::from_fn(|i| known[i] + sum[i]),
-        error: error.max(ROUNDING * size),
+    let whole = |totals: &Totals| Whole {
+        integral: core::array::from_fn(|i| known[i] + totals.integral[i]),
+        error: totals.error[0].max(ROUNDING * (totals.size[0] + 0.5 * totals.rounded)),
     };
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
     if pair.near < BESIDE {
@@ -173,12 +190,13 @@ pub(super) fn integrate(
         for part in 0..parts as usize {
             let from = length.mul_add(part as f64, pair_of_marks[0]);
             let to = if part + 1 == parts as usize { pair_of_marks[1] } else { from + length };
-            intervals.push(rule(profile, (pair, &comparison), (integrand, wanted), [from, to]));
+            intervals.push(rule(&subject, (integrand, wanted), [from, to]));
         }
     }
     let most = MOST.max(2 * intervals.len());
     loop {
-        let Totals { integral, error, loose, size } = totals(&intervals);
+        let totals = totals(&intervals);
+        let Totals { error, loose, size, .. } = &totals;
         let share = |i: usize| {
             let settled = error[i] <= noise[i] || size[i] <= 0.0;
             if settled { 0.0 } else { loose[i] / size[i] }
@@ -189,15 +207,15 @@ pub(super) fn integrate(
             let places = (0..intervals.len()).filter(|at| intervals[*at].is_loose(worst));
             places.max_by(|a, b| intervals[*a].error[worst].total_cmp(&intervals[*b].error[worst]))
         });
-        let Some(at) = cut else { return whole(integral, error[0], size[0]) };
+        let Some(at) = cut else { return whole(&totals) };
         let cut = intervals[at];
         let [from, to] = cut.ends;
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
-            return whole(integral, error[0], size[0]);
+            return whole(&totals);
         }
-        let [mut first, mut second] = [[from, middle], [middle, to]]
-            .map(|ends| rule(profile, (pair, &comparison), (integrand, wanted), ends));
+        let [mut first, mut second] =
+            [[from, middle], [middle, to]].map(|ends| rule(&subject, (integrand, wanted), ends));
         cut.is_cut_into(&mut first, &mut second);
         intervals[at] = first;
         intervals.push(second);
@@ -211,12 +229,14 @@ struct Totals {
     /// Of those errors that halving may mend.
     loose: [f64; INTEGRALS],
     size: [f64; INTEGRALS],
+    rounded: f64,
 }
 
 fn totals(intervals: &[Interval]) -> Totals {
     let zero = [0.0; INTEGRALS];
-    let mut all = Totals { integral: zero, error: zero, loose: zero, size: zero };
+    let mut all = Totals { integral: zero, error: zero, loose: zero, size: zero, rounded: 0.0 };
     for interval in intervals {
+        all.rounded += interval.rounded;
         for i in 0..INTEGRALS {
             all.integral[i] += interval.integral[i];
             all.error[i] += interval.error[i];
@@ -228,18 +248,15 @@ fn totals(intervals: &[Interval]) -> Totals {
 }
 
 /// Both rules over one interval.
-fn rule(
-    profile: &Profile,
-    pair: (&Pair, &Comparison),
-    wanted: (Integrand, usize),
-    ends: [f64; 2],
-) -> Interval {
+fn rule(subject: &Subject<'_>, wanted: (Integrand, usize), ends: [f64; 2]) -> Interval {
     let mut places: integrands::Rows = [Lanes([0.0; WIDTH]); integrands::ROWS];
     place_tier(ends, &mut places);
-    let values = integrands::at(profile, pair, wanted, places);
+    let (values, rounded) = integrands::at(subject, wanted, places);
+    let rounded = as_numbers(&rounded);
+    let rounded = kronrod::estimate(ends, |k| rounded[k]).integral;
     let nothing = [0.0; INTEGRALS];
     let mut interval =
-        Interval { ends, integral: nothing, error: nothing, size: nothing, stuck: [0; INTEGRALS] };
+        Interval { ends, integral: nothing, error: nothing, size: nothing, rounded, stuck: [0; INTEGRALS] };
     for i in 0..wanted.1 {
         let values = as_numbers(&values[i]);
         let found = kronrod::estimate(ends, |k| values[k]);

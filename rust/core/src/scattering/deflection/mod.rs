@@ -17,6 +17,7 @@ mod integrands;
 mod nodes;
 mod pack;
 mod pairs;
+mod precise;
 mod profile;
 mod refine;
 mod search;
@@ -111,6 +112,8 @@ pub struct Deflector {
     profile: Option<Profile>,
     closed: Option<Closed>,
     tolerance: f64,
+    /// Whether angles beside a barrier are as certain as E and b.
+    refined: bool,
 }
 
 impl Deflector {
@@ -132,7 +135,14 @@ impl Deflector {
                 "expected one that goes to 0 as r goes to infinity; nothing scatters off one that does not",
             ));
         }
-        Ok(Self { profile, closed, tolerance: tolerance.max(FINEST) })
+        Ok(Self { profile, closed, tolerance: tolerance.max(FINEST), refined: true })
+    }
+    /// The same for the places of a table, which need no more beside a barrier than rounding leaves.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn for_table(potential: &Arc<dyn Potential>, tolerance: f64) -> Result<Self> {
+        Ok(Self { refined: false, ..Self::new(potential, tolerance)? })
     }
     /// Where the deflection function is not smooth at an energy, ascending.
     pub fn edges(&self, energy: f64) -> Vec<Edge> {
@@ -154,6 +164,14 @@ impl Deflector {
     pub fn range(&self) -> f64 {
         let known = self.closed.map_or(f64::INFINITY, Closed::range);
         self.profile.as_ref().map_or(known, |profile| profile.range().min(known))
+    }
+    /// Whether V repels everywhere and is smooth, so that ψ falls with b all the way.
+    pub(in crate::scattering) fn repels(&self) -> bool {
+        self.profile.as_ref().is_some_and(Profile::repels)
+    }
+    /// Far out, the power n of V = k/rⁿ at a distance; NaN where nothing is left of V, or where another sum does without.
+    pub(in crate::scattering) fn power_at(&self, r: f64) -> f64 {
+        self.profile.as_ref().map_or(f64::NAN, |profile| profile.power_at(profile.take_length(r)))
     }
     /// The energies at which orbits begin or end to be: the extrema of V + r V′/2.
     pub fn critical_energies(&self) -> Vec<f64> {
@@ -236,8 +254,8 @@ impl Deflector {
         let (Some(profile), false) = (&self.profile, self.closed.is_some() && !all) else {
             return Ok(self.closed.map(known).unwrap_or_default());
         };
-        let mut found =
-            Quadrature { profile, tolerance: self.tolerance, all }.deflections(energy, b, ticker)?;
+        let mut found = Quadrature { profile, tolerance: self.tolerance, refined: self.refined, all }
+            .deflections(energy, b, ticker)?;
         if let Some(closed) = self.closed {
             for (found, known) in found.iter_mut().zip(known(closed)) {
                 *found = Deflection { derivative: found.derivative, delay: found.delay, ..known };

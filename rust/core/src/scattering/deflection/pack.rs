@@ -48,6 +48,8 @@ pub(super) struct Constants {
     pub(super) square: Lanes,
     pub(super) series: [Lanes; 3],
     pub(super) strong: Bits,
+    /// Whether V repels everywhere, so that G is nowhere small.
+    pub(super) repels: bool,
     /// Halves of what the integrands are at w = 0.
     pub(super) start: [Lanes; INTEGRALS],
     /// What sums are measured beside themselves.
@@ -67,6 +69,7 @@ impl Default for Constants {
             square: empty,
             series: [empty; 3],
             strong: Bits(0),
+            repels: false,
             start: all,
             beside: all,
             closed: empty,
@@ -82,11 +85,13 @@ pub(super) struct Running {
     pub(super) size: [Lanes; INTEGRALS],
     /// The least G.
     pub(super) least: Lanes,
+    /// What a rounding of V makes of the integrand of ψ, where V does not repel everywhere.
+    pub(super) terms: Lanes,
 }
 
 /// What does not change, and what there is at w = 0.
 #[inline(always)]
-fn begin<V: Vector8>(pack: &Pack, constants: &mut Constants, running: &mut Running) {
+fn begin<V: Vector8>(pack: &Pack, repels: bool, constants: &mut Constants, running: &mut Running) {
     let (one, half) = (V::one(), V::splat(0.5));
     let (x, y, root) = (V::load(pack.value), V::load(pack.force), V::load(pack.root));
     let square = root * root;
@@ -123,6 +128,7 @@ fn begin<V: Vector8>(pack: &Pack, constants: &mut Constants, running: &mut Runni
         square: square.store(),
         series: [weak[0].store(), weak[1].store(), weak[2].store()],
         strong,
+        repels,
         start: [start[0].store(), start[1].store(), start[2].store()],
         beside: [V::select(strong, V::load(closed), x.abs()).store(), y.abs().store(), x.abs().store()],
         closed,
@@ -132,8 +138,9 @@ fn begin<V: Vector8>(pack: &Pack, constants: &mut Constants, running: &mut Runni
         running.size[i] = start[i].abs().store();
     }
     running.least = g.store();
+    running.terms = Lanes([0.0; WIDTH]);
 }
 
 tiered! {
-    pub(super) fn begin_tier[][](pack: &Pack, constants: &mut Constants, running: &mut Running) = begin;
+    pub(super) fn begin_tier[][](pack: &Pack, repels: bool, constants: &mut Constants, running: &mut Running) = begin;
 }

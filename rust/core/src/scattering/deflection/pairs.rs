@@ -17,8 +17,6 @@ use core::f64::consts::PI;
 
 /// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
 pub(super) const NEAR_ORBITING: f64 = 1e-4;
-/// What rounding leaves of the distance to a barrier, as a part of b.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// And here equal steps would be many.
 const NEAR_BARRIER: f64 = 0.003;
 /// An angle of less than this part of what cancels in it is found as a sum of small turns.
@@ -30,6 +28,8 @@ const LEFT_OUT: f64 = 0.05;
 pub(super) struct Quadrature<'a> {
     pub(super) profile: &'a Profile,
     pub(super) tolerance: f64,
+    /// Whether angles beside a barrier are as certain as E and b.
+    pub(super) refined: bool,
     pub(super) all: bool,
 }
 
@@ -202,7 +202,8 @@ impl Quadrature<'_> {
             for (lane, at) in group.iter().enumerate() {
                 let at = usize::from(*at);
                 let found = &mut found[usize::from(turning.places[at])];
-                self.finish((turning, at), &pack, &work.sums, lane, found);
+                let impact_parameter = as_numbers(&turned.b)[at];
+                self.finish((turning, at, impact_parameter), &pack, &work.sums, lane, found);
                 profile.check_resolved(pack.energy.0[lane], self.tolerance, found)?;
             }
         }
@@ -251,7 +252,7 @@ impl Quadrature<'_> {
     /// What the sums of a lane make, or if they are not good enough its intervals.
     fn finish(
         &self,
-        (turning, at): (&Turning, usize),
+        (turning, at, impact_parameter): (&Turning, usize, f64),
         pack: &Pack,
         sums: &Sums,
         lane: usize,
@@ -271,22 +272,21 @@ impl Quadrature<'_> {
             let mark = profile.next_mark(r * (1.0 + 16.0 * f64::EPSILON));
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks(), mark);
             let curvature = pack.curvature.0[lane];
-            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
+            let energy = pack.energy.0[lane];
+            Pair { energy, impact_parameter, turning: r, value: x, force: y, root, curvature, near, nearness }
         };
         let (integral, mut error) = if sums.met.lane(lane) {
             let integral = &sums.integral;
             ([integral[0].0[lane], integral[1].0[lane], integral[2].0[lane]], sums.error.0[lane])
         } else {
-            let tolerance = self.tolerance.max(ROUNDING / nearness);
-            self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance)
+            self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at))
         };
         (found.angle, found.complement) = comparison::angle(strong, [x, y], root, integral[0]);
         // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
         let passes = matches!(profile.center(), Center::Open(_));
         let short = CANCELLED * PI * (x / (1.0 + root)).abs().min(1.0);
         if passes && found.angle.abs() < short {
-            let (turns, off) =
-                self.by_intervals(&single(), Integrand::Turning, turning.barriers(at), self.tolerance);
+            let (turns, off) = self.by_intervals(&single(), Integrand::Turning, turning.barriers(at));
             (found.angle, found.complement) = (turns[0], PI - turns[0].abs());
             error = 0.5 * off / root;
         }
@@ -300,16 +300,11 @@ impl Quadrature<'_> {
     }
 
     /// The integrals, and how far the first may be off.
-    fn by_intervals(
-        &self,
-        pair: &Pair,
-        integrand: Integrand,
-        barriers: &[f64],
-        tolerance: f64,
-    ) -> ([f64; INTEGRALS], f64) {
+    fn by_intervals(&self, pair: &Pair, integrand: Integrand, barriers: &[f64]) -> ([f64; INTEGRALS], f64) {
         let ends = [barriers, self.profile.breaks(), self.profile.marks()].concat();
         let wanted = if self.all && integrand == Integrand::Deflection { INTEGRALS } else { 1 };
-        let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
+        let whole =
+            adaptive::integrate(self.profile, pair, integrand, &ends, (self.tolerance, self.refined), wanted);
         (whole.integral, whole.error)
     }
 }

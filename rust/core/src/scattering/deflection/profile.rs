@@ -6,6 +6,7 @@
 
 use super::grid::{Grid, POINTS, place, radius};
 use super::search::highest;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::potentials::Potential;
@@ -272,6 +273,17 @@ impl Profile {
         self.forces(&[Lanes([r; WIDTH])], &mut force);
         force[0].0[0]
     }
+    /// V and −dV/dr at one distance, to about thirty digits; none beyond its range.
+    pub(super) fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+        if r.high() > self.domain[1] {
+            return (DoubleDouble::default(), DoubleDouble::default());
+        }
+        self.potential.precise(r)
+    }
+    /// The first of them.
+    pub(super) fn precise_value(&self, r: DoubleDouble) -> DoubleDouble {
+        if r.high() > self.domain[1] { DoubleDouble::default() } else { self.potential.precise_value(r) }
+    }
     /// Beyond which V is zero, in the caller's units.
     pub(super) fn range(&self) -> f64 {
         let edge = self.breaks.last().copied().filter(|r| self.value(r.next_up()) == 0.0);
@@ -290,6 +302,10 @@ impl Profile {
     /// What a delay is where V falls no faster than 1/r: never over.
     pub(super) fn endless_delay(&self) -> f64 {
         self.endless_delay
+    }
+    /// The power n of V = k/rⁿ at a distance.
+    pub(super) fn power_at(&self, r: f64) -> f64 {
+        r * self.force(r) / self.value(r)
     }
     /// From where on V is a power of r, as far as the grid goes; infinite if it is not.
     pub(super) fn power_from(&self) -> f64 {

@@ -23,6 +23,8 @@ use crate::tiered;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Where G comes nearer to zero, a barrier is near.
 const NEAR_ZERO: f64 = 0.004;
+/// Of V, which is halved in 1/√G.
+const ROUNDED_TERMS: f64 = 2.0 * f64::EPSILON;
 
 /// How many integrals: ψ, dψ/db, delay.
 pub(super) const INTEGRALS: usize = 3;
@@ -94,7 +96,7 @@ impl Default for Work {
         Self {
             rows: Rows::default(),
             constants: Constants::default(),
-            running: Running { sum: all, size: all, least: empty },
+            running: Running { sum: all, size: all, least: empty, terms: empty },
             spectra: [Spectrum::default(); INTEGRALS],
             sums: Sums { integral: all, error: empty, met: Bits(0) },
         }
@@ -129,7 +131,8 @@ fn add_nodes<V: Vector8, const N: usize>(
         sum[i] = V::load(running.sum[i]);
         size[i] = V::load(running.size[i]);
     }
-    let mut least = V::load(running.least);
+    let (mut least, mut terms) = (V::load(running.least), V::load(running.terms));
+    let repels = constants.repels;
     let (distances, values, forces) = (V::view(&rows.distance), V::view(&rows.value), V::view(&rows.force));
     let [first, second, third] = &mut rows.integrand;
     let range = rows.used - nodes.len()..rows.used;
@@ -142,7 +145,8 @@ fn add_nodes<V: Vector8, const N: usize>(
         let (u, weight) = (V::splat(node.ratio), V::splat(node.weight));
         let squared = V::splat(node.ratio * node.ratio);
         let counts = V::splat(k as f64).less(reach);
-        let excess = value.multiply_add(squared, -(values[k] * inverse_energy)) * weight;
+        let here = values[k] * inverse_energy;
+        let excess = value.multiply_add(squared, -here) * weight;
         let g = one + excess;
         let root = g.sqrt();
         let p = excess / (root * (root + one));
@@ -160,6 +164,12 @@ fn add_nodes<V: Vector8, const N: usize>(
         sum[0] += angle;
         size[0] += angle.abs();
         least = V::select(counts, least.min(g), least);
+        if !repels {
+            // What the rounding of V makes of 1/√G, of which (1 − p)³ is the cube.
+            let inverse = one - p;
+            let cube = inverse * inverse * inverse;
+            terms += V::select(counts, (here * weight).abs() * (cube * u), V::zero());
+        }
         if N > 1 {
             let pull = forces[k] * distances[k] * inverse_energy;
             let bend = turn.multiply_subtract_from(squared, pull) * weight;
@@ -180,6 +190,7 @@ fn add_nodes<V: Vector8, const N: usize>(
         running.size[i] = size[i].store();
     }
     running.least = least.store();
+    running.terms = terms.store();
 }
 
 /// Takes over what the lanes that are `open` have come to with steps of one length, and says which need shorter ones.
@@ -194,11 +205,16 @@ fn judge<V: Vector8, const N: usize>(
 ) -> Bits {
     let (h, tolerance) = (V::splat(level.step), V::splat(tolerance));
     let least = V::load(running.least);
+    let rounding = V::splat(ROUNDED_TERMS) * h * V::load(running.terms);
     let fine = V::splat(NEAR_ZERO).less(least);
     let mut met = open.and(fine).and(h.less_equal(V::load(*longest)));
-    for i in 0..N {
-        let size = V::load(running.size[i]).multiply_add(h, V::load(constants.beside[i]));
-        let error = spectra[i].error::<V>();
+    let sizes: [V; N] =
+        core::array::from_fn(|i| V::load(running.size[i]).multiply_add(h, V::load(constants.beside[i])));
+    for (i, size) in sizes.into_iter().enumerate() {
+        let mut error = spectra[i].error::<V>();
+        if i == 0 {
+            error = error.max(rounding);
+        }
         met = met.and(error.less_equal(tolerance * size));
         if i == 0 {
             done.error = V::select(open, error.max(V::splat(ROUNDING) * size), V::load(done.error)).store();
@@ -214,7 +230,9 @@ fn judge<V: Vector8, const N: usize>(
         done.integral[i] = V::select(open, sum, V::load(done.integral[i])).store();
     }
     done.met = done.met.or(met);
-    open.and(met.not()).and(fine)
+    // Shorter steps make no less of what is rounded.
+    let rounded = (tolerance * sizes[0]).less(rounding);
+    open.and(met.not()).and(fine).and(rounded.not())
 }
 
 tiered! {
@@ -232,7 +250,7 @@ pub(super) fn integrate<const N: usize>(
     work: &mut Work,
 ) {
     let Work { rows, constants, running, spectra, sums } = work;
-    begin_tier(pack, constants, running);
+    begin_tier(pack, profile.repels(), constants, running);
     rows.used = 0;
     sums.met = Bits(0);
     let mut open = Bits(0);

@@ -7,7 +7,7 @@ use crate::scattering::deflection::{Deflector, Status};
 fn deflector(name: &str, numbers: &[f64]) -> Deflector {
     let values: Vec<Value> = numbers.iter().map(|x| Value::Number(*x)).collect();
     let potential = (registry::potential(name).unwrap().make)(&values).unwrap();
-    Deflector::new(&potential, 1e-12).unwrap()
+    Deflector::for_table(&potential, 1e-12).unwrap()
 }
 
 fn built(deflector: &Deflector, energy: f64, b_max: f64) -> EventTable {

@@ -19,10 +19,10 @@ impl<F: Fn(u64) -> f64> Stepping for Binned<'_, F> {
 }
 
 fn steps(edges: &Edges, turning: &[u64], value: impl Fn(u64) -> f64) -> Steps {
-    Steps::new(turning, &Binned(edges, value), &mut Ticker::quiet(&Control::new(0))).unwrap()
+    Steps::new(turning, &Binned(edges, value), true, &mut Ticker::quiet(&Control::new(0))).unwrap()
 }
 
-fn slots_of(steps: &Steps, bins: usize, counters: &[[u64; Steps::BANKS]]) -> Vec<u64> {
+fn slots_of(steps: &Steps, bins: usize, counters: &[u64]) -> Vec<u64> {
     let mut slots = vec![0; bins + 2];
     steps.collect(counters, &mut slots);
     slots
@@ -55,7 +55,7 @@ fn edges_notice_cancellation() {
     let control = Control::new(0);
     control.cancel();
     let edges = Edges::uniform(100, 0.0, 1.0).unwrap();
-    let outcome = Steps::new(&[], &Binned(&edges, |draw| draw as f64), &mut Ticker::quiet(&control));
+    let outcome = Steps::new(&[], &Binned(&edges, |draw| draw as f64), true, &mut Ticker::quiet(&control));
     assert!(matches!(outcome, Err(Error::Interrupted)));
 }
 

@@ -94,7 +94,7 @@ impl Beam {
                 "expected a target that takes part in the motion, got too light a one",
             ));
         }
-        let deflector = Deflector::new(potential, TOLERANCE)?;
+        let deflector = Deflector::for_table(potential, TOLERANCE)?;
         let target = if profile.energy_spread.is_none() {
             let relative = energy * share;
             let table = EventTable::build(&deflector, relative, b_max, threads, ticker)?;

@@ -207,15 +207,20 @@ impl Tally {
     pub(super) fn slot_of(&self, beam: &Beam, arrival: &Arrival, half: Option<HalfAngle>) -> usize {
         arrival.stratum * self.slots() + self.slot(|quantity| beam.value_at(quantity, arrival, half))
     }
-    /// The step function of the draw that it is, in one of the channels that have events.
-    pub(super) fn steps(&self, beam: &Beam, exit: usize, ticker: &mut Ticker<'_>) -> Result<Steps> {
+    /// The step function of the draw that it is, in one of the channels that have events; alone, or one of many.
+    pub(super) fn steps(
+        &self,
+        (beam, exit): (&Beam, usize),
+        alone: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Steps> {
         let mut turns: Vec<u64> =
             self.axes.iter().flat_map(|(quantity, _)| beam.turning_draws(*quantity, exit)).collect();
         turns.extend(beam.strata().into_iter().flat_map(Strata::boundaries));
         turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
         turns.sort_unstable();
         turns.dedup();
-        Steps::new(&turns, &OfDraw { tally: self, beam, exit }, ticker)
+        Steps::new(&turns, &OfDraw { tally: self, beam, exit }, alone, ticker)
     }
 }
 

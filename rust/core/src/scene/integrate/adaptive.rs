@@ -11,6 +11,7 @@ mod guide;
 mod measure;
 mod outputs;
 mod part;
+mod sticking;
 mod stuck;
 
 use super::super::layout::Layout;
@@ -96,6 +97,7 @@ struct Slot<'a> {
     counts: Counts,
     /// How much of it was counted as progress.
     progress: u64,
+    pace: sticking::Pace,
     /// Its events, if it has any.
     watch: Option<Box<Watch<'a>>>,
 }
@@ -253,7 +255,8 @@ impl<'a> Run<'a> {
             self.abreast = self.abreast.take().or_else(|| Abreast::of(watch));
             self.abreast.iter_mut().for_each(|abreast| abreast.begin(lane, &unit, watch));
         }
-        let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
+        let mut slot =
+            Slot { unit, index, next_output: 0, counts, progress: 0, pace: sticking::Pace::default(), watch };
         self.record_start(&mut slot, lane, ticker)?;
         if self.end() == 0.0 {
             if slot.unit.unit.reports() {

@@ -21,6 +21,11 @@ pub enum Ending {
     },
     /// The step fell to zero, and no bodies are close.
     NoStep,
+    /// A velocity sticks at zero, where a force leaps.
+    Sticking {
+        /// Whose.
+        body: usize,
+    },
     /// The state became infinite or undefined.
     NotFinite,
     /// Bodies came to a distance, or to a speed, at which a force on them is not known.

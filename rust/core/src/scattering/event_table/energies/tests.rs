@@ -8,7 +8,7 @@ use crate::registry;
 fn deflector(name: &str, numbers: &[f64]) -> Deflector {
     let values: Vec<Value> = numbers.iter().map(|x| Value::Number(*x)).collect();
     let potential = (registry::potential(name).unwrap().make)(&values).unwrap();
-    Deflector::new(&potential, 1e-12).unwrap()
+    Deflector::for_table(&potential, 1e-12).unwrap()
 }
 
 fn built(deflector: &Deflector, range: [f64; 2], b_max: f64, threads: usize) -> Result<Energies> {

@@ -5,7 +5,8 @@ use crate::numerics::angles::{atan2, cos, sin, sin_cos};
 use crate::numerics::philox::{draw, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
-use crate::scattering::deflection::{Deflection, Deflector, Status};
+use crate::scattering::cross_sections::Structure;
+use crate::scattering::deflection::{Deflection, Deflector, Edge, Status};
 use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -39,6 +40,8 @@ const CERTIFYING: u64 = 64;
 /// Radii to an octave that are tried for a reach, and how many octaves.
 const PER_OCTAVE: i32 = 4;
 const OCTAVES: i32 = 40;
+/// So near to an edge of ψ it is looked at, as a part of b.
+const BESIDE: f64 = 1e-9;
 /// Of the quadrature.
 const TOLERANCE: f64 = 1e-12;
 
@@ -50,22 +53,30 @@ pub(in crate::scattering::foil) fn reach(
     cap: f64,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<f64>> {
-    let turns = |found: &Deflection| found.status == Status::Captured || found.angle.abs() >= angle;
+    let radius = |step: i32| {
+        let rest = f64::from(step.rem_euclid(PER_OCTAVE)) / f64::from(PER_OCTAVE);
+        cap * 0.5_f64.powi(step.div_euclid(PER_OCTAVE)) * (1.0 - 0.5 * rest)
+    };
     let mut bounds: Vec<Option<(f64, f64)>> = vec![None; energies.len()];
     for step in 0..=PER_OCTAVE * OCTAVES {
         let open: Vec<usize> = (0..energies.len()).filter(|at| bounds[*at].is_none()).collect();
         if open.is_empty() {
             break;
         }
-        let radius = |step: i32| {
-            let rest = f64::from(step.rem_euclid(PER_OCTAVE)) / f64::from(PER_OCTAVE);
-            cap * 0.5_f64.powi(step.div_euclid(PER_OCTAVE)) * (1.0 - 0.5 * rest)
-        };
         let found = source
             .deflections(&open.iter().map(|at| (energies[*at], radius(step))).collect::<Vec<_>>(), ticker)?;
         for (at, found) in open.into_iter().zip(&found) {
-            if turns(found) {
+            if turns(found, angle) {
                 bounds[at] = Some((radius(step), if step == 0 { cap } else { radius(step - 1) }));
+            }
+        }
+    }
+    if !source.deflector.repels() {
+        for (energy, bounds) in energies.iter().zip(&mut bounds) {
+            let Some(hump) = outermost_hump(source, *energy, (angle, cap), ticker)? else { continue };
+            if bounds.is_none_or(|(from, _)| hump > from) {
+                let outside = (0..=PER_OCTAVE * OCTAVES).map(radius).take_while(|b| *b > hump).last();
+                *bounds = Some((hump, outside.unwrap_or(cap)));
             }
         }
     }
@@ -79,11 +90,34 @@ pub(in crate::scattering::foil) fn reach(
         let found = source.deflections(&pairs, ticker)?;
         for ((bounds, (_, middle)), found) in bounds.iter_mut().zip(pairs).zip(&found) {
             if let Some((from, to)) = bounds {
-                if turns(found) { *from = middle } else { *to = middle }
+                if turns(found, angle) { *from = middle } else { *to = middle }
             }
         }
     }
     Ok(bounds.into_iter().map(|bounds| bounds.map_or(0.0, |(_, to)| to)).collect())
+}
+
+/// The outermost impact parameter up to `cap` at which |ψ| is largest, at a rainbow, beside an orbit or at the end of V, and as
+/// large as an angle: between two radii nobody would see it.
+fn outermost_hump(
+    source: &Source<'_>,
+    energy: f64,
+    (angle, cap): (f64, f64),
+    ticker: &mut Ticker<'_>,
+) -> Result<Option<f64>> {
+    let structure = Structure::new(source.deflector, energy, ticker)?;
+    let beside = |edge: &Edge| [1.0 - BESIDE, 1.0 + BESIDE].map(|part| part * edge.impact_parameter);
+    let rainbows = structure.rainbows().iter().map(|rainbow| rainbow.impact_parameter);
+    let places = rainbows.chain(structure.edges().iter().flat_map(beside)).filter(|b| *b <= cap);
+    let pairs: Vec<(f64, f64)> = places.map(|b| (energy, b)).collect();
+    let found = source.deflections(&pairs, ticker)?;
+    let turning = pairs.iter().zip(&found).filter(|(_, found)| turns(found, angle)).map(|((_, b), _)| *b);
+    Ok(turning.max_by(f64::total_cmp))
+}
+
+/// Whether it turns by an angle.
+fn turns(found: &Deflection, angle: f64) -> bool {
+    found.status == Status::Captured || found.angle.abs() >= angle
 }
 
 impl<'a> Source<'a> {
@@ -94,7 +128,7 @@ impl<'a> Source<'a> {
     }
     /// Of a potential.
     pub(in crate::scattering::foil) fn deflector(potential: &Arc<dyn Potential>) -> Result<Arc<Deflector>> {
-        Deflector::new(potential, TOLERANCE).map(Arc::new)
+        Deflector::for_table(potential, TOLERANCE).map(Arc::new)
     }
 }
 

@@ -15,6 +15,7 @@ impl<'a> Run<'a> {
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
     pub(super) fn settle(&mut self, lane: usize, outcome: &Settled<Lanes>, ticker: &mut Ticker<'_>) {
         let (end, elapsed) = (self.end(), self.elapsed(lane));
+        let sticks = self.sticks(lane, ticker);
         let Some(slot) = self.slots[lane].as_mut() else { return };
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
         // taken when it is kept.
@@ -49,6 +50,8 @@ impl<'a> Run<'a> {
         } else if stopped {
             // The events know better where.
             Ending::Stopped
+        } else if let Some(body) = sticks {
+            Ending::Sticking { body }
         } else {
             return;
         };
