@@ -8,7 +8,7 @@ import visviva as vv
 S = vv.scattering
 P = vv.potentials
 MASSES = (1.008, 12.0)
-DEPTH = 32.0
+DEPTH = 64.0
 # Of relative motion, as a part of the energy in the laboratory.
 SHARE = MASSES[1] / (MASSES[0] + MASSES[1])
 

@@ -182,6 +182,19 @@ fn node(k: usize, of: usize) -> f64 {
 impl Cell {
     fn build(source: &Source<'_>, bounds: (f64, f64), b_max: f64, ticker: &mut Ticker<'_>) -> Result<Self> {
         let middle = 0.5 * (bounds.0 + bounds.1);
+        // Near an orbit they turn without end, which no series would follow: many pieces would be tried for nothing.
+        let mut orbits = false;
+        for energy in [bounds.0, middle, bounds.1] {
+            for edge in source.deflector.edges(energy).iter().filter(|edge| edge.impact_parameter < b_max) {
+                if edge.captures {
+                    return Err(captures(energy));
+                }
+                orbits |= edge.orbit.is_some();
+            }
+        }
+        if orbits {
+            return Ok(Self { b_max, scale: middle, starts: Vec::new(), pieces: Vec::new() });
+        }
         let scale = matched(source, middle, b_max, ticker)? * middle;
         let mut cell = Self { b_max, scale, starts: Vec::new(), pieces: Vec::new() };
         let mut done: Vec<(f64, f64, Series)> = Vec::new();
