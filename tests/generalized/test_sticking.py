@@ -32,6 +32,14 @@ def test_a_body_on_a_spring_sticks_where_friction_holds_it(rtol: float) -> None:
     assert out.steps < 20_000
 
 
+@pytest.mark.parametrize("method", ["dop853", "verner98", "dormand_prince54"])
+def test_every_method_says_why_it_ends(method: str) -> None:
+    with pytest.raises(vv.ConvergenceError, match="a velocity sticks at zero"):
+        sliding(0.25).run([0.0, 30.0], method=method)
+    copies = sliding(0.25).ensemble(position=[[0.25], [0.35]]).run([0.0, 30.0], method=method)
+    assert (copies.status == vv.Status.STEP_FAILURE).all()
+
+
 def test_turns_on_the_way_are_no_sticking() -> None:
     """Before it sticks, the velocity passes zero four times, each time beyond the reach of friction."""
     out = sliding(1.05).run(np.pi * np.arange(5.0))

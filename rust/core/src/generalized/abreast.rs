@@ -4,6 +4,7 @@
 //! lane does what [`solve`](super::run::solve) does for one, operation by operation, so a copy has the bits that it has alone.
 //! Methods with equal steps go from node to node together, and take up copies eight at a time.
 
+mod endings;
 mod outputs;
 mod side_by_side;
 
@@ -264,40 +265,6 @@ impl<'a> Abreast<'a> {
         Ok(())
     }
 
-    /// The lanes of these whose step did not go through a pole; the others end.
-    fn short_of_poles(&mut self, kept: Bits, ticker: &mut Ticker<'_>) -> Bits {
-        let mut short = Bits(0);
-        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
-            let Some(slot) = self.slots[lane].as_mut() else { continue };
-            if !slot.poles.is_empty() {
-                let y: Vec<f64> = self.trial.next().all().0.iter().map(|y| y.0[lane]).collect();
-                if let Err(Error::Convergence { message, .. }) = slot.poles.look(slot.solution.reached, &y) {
-                    self.passed.push(slot.index);
-                    self.end(lane, Ending::StepTooSmall, Some(message), ticker);
-                    continue;
-                }
-            }
-            short = short.or(Bits(1 << lane));
-        }
-        short
-    }
-
-    /// Ends those lanes of these in which friction holds what the step came to.
-    fn look_for_rest(&mut self, kept: Bits, ticker: &mut Ticker<'_>) {
-        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
-            let next = self.trial.next();
-            let Some(slot) = self.slots[lane].as_mut().filter(|slot| !slot.sticking.is_empty()) else {
-                continue;
-            };
-            let y: Vec<f64> = next.all().0.iter().map(|y| y.0[lane]).collect();
-            if let Err(Error::Convergence { message, .. }) =
-                slot.sticking.look(slot.solution.reached, &y, self.request.dt)
-            {
-                self.end(lane, Ending::StepTooSmall, Some(message), ticker);
-            }
-        }
-    }
-
     /// The slots in the lanes of a mask.
     fn in_lanes(&mut self, mask: Bits) -> impl Iterator<Item = (usize, &mut Slot)> {
         let slots = self.slots.iter_mut().enumerate().filter(move |(lane, _)| mask.lane(*lane));
@@ -376,29 +343,5 @@ impl<'a> Abreast<'a> {
             kept = kept.or(Bits(1 << lane));
         }
         kept
-    }
-
-    /// Ends a trajectory, and tells so.
-    fn end(&mut self, lane: usize, ending: Ending, failure: Option<String>, ticker: &mut Ticker<'_>) {
-        self.settle(lane, ending, failure);
-        ticker.advance(1);
-    }
-
-    /// Ends all that run where they are.
-    fn interrupt(&mut self) {
-        for lane in 0..WIDTH {
-            self.settle(lane, Ending::Interrupted, None);
-        }
-    }
-
-    /// Puts away what a trajectory has come to, if there is one in the lane.
-    fn settle(&mut self, lane: usize, ending: Ending, failure: Option<String>) {
-        let Some(Slot { index, mut solution, .. }) = self.slots[lane].take() else { return };
-        solution.ending = ending;
-        solution.failure = failure.or_else(|| ending.reason());
-        for (last, y) in solution.last_state.iter_mut().zip(self.state.all().0) {
-            *last = y.0[lane];
-        }
-        self.done[index] = Some(solution);
     }
 }

@@ -3,8 +3,10 @@
 //! The one idea: a run is that of [`ode::run`](crate::ode::run), with whatever takes its steps; outputs are read off steps and
 //! never steer them. With constraints every kept step is put back on them ([`projection`]).
 
+mod counted;
+
 use super::discrete::{self, DiscreteStep};
-use super::events::{Event, Found, Interval, Watch};
+use super::events::{Event, Found, Watch};
 use super::fixed::FixedSteps;
 use super::gauss::{self, GaussStep, Steps};
 use super::linear_motion::LinearMotion;
@@ -20,7 +22,7 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::embedded::EmbeddedStep;
 use crate::ode::events::Watch as Unwatched;
 use crate::ode::norm::{Norm, RootMeanSquare};
-use crate::ode::run::{Ending, Recorder, Step, Times, run};
+use crate::ode::run::{Ending, Recorder, Times, run};
 use crate::ode::state::State;
 use crate::ode::step_control::{Controlled, Rule};
 use crate::ode::system::{Form, System};
@@ -29,6 +31,7 @@ use crate::ode::taylor::TaylorStep;
 use crate::ode::trial::Trial;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
+use counted::Counted;
 use std::sync::Arc;
 
 /// What takes the steps.
@@ -285,6 +288,10 @@ fn solve_within(
         return solve_within(model, request, (y0, parameters), h * SHORTER, ticker);
     }
     let (ending, failure) = match outcome {
+        Ok(Ending::StepTooSmall) => {
+            let sticks = recorder.sticking.explains(recorder.kept, state.all().0);
+            (Ending::StepTooSmall, sticks.or_else(|| Ending::StepTooSmall.reason()))
+        }
         Ok(ending) => (ending, ending.reason()),
         Err(Error::Convergence { message, .. }) => {
             let ending = if recorder.beyond { Ending::TooManySteps } else { Ending::StepTooSmall };
@@ -307,77 +314,6 @@ fn solve_within(
         h: longest,
         found: watch.found,
     })
-}
-
-/// A table that counts steps.
-struct Counted<'a> {
-    table: Table<'a>,
-    watch: Watch<'a>,
-    sticking: Sticking,
-    poles: Poles,
-    /// The length of the step that went through a pole.
-    passed: Option<f64>,
-    steps: u64,
-    /// The longest of them.
-    longest: f64,
-    /// Where the last one ended, or could not be read.
-    reached: f64,
-    /// Where the last one ended that was kept.
-    kept: f64,
-    /// How long all steps are, if they are alike.
-    equal: Option<f64>,
-    /// The most steps.
-    most: u64,
-    /// Whether there was one more.
-    beyond: bool,
-}
-
-impl Recorder for Counted<'_> {
-    fn start(&mut self, t: f64, y: &[f64]) -> Result<()> {
-        self.watch.start(t, y)?;
-        self.table.start(t, y)
-    }
-
-    fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
-        if self.steps == self.most {
-            self.beyond = true;
-            return Err(Error::Convergence { message: too_many_steps(self.most), time: step.from });
-        }
-        self.steps += 1;
-        let length = (step.to - step.from).abs();
-        if !self.poles.is_empty() {
-            self.poles.look(step.to, step.end()).inspect_err(|_| self.passed = Some(length))?;
-        }
-        self.longest = if length > self.longest { length } else { self.longest };
-        let stop = self.watch.look(&mut Stepped(step))?;
-        self.reached = stop.unwrap_or(step.to);
-        self.table.keep(step, stop).inspect_err(|_| {
-            // Where a state inside the step is not found, nothing is known beyond.
-            self.reached = self.table.next_output().unwrap_or(self.reached);
-        })?;
-        if stop.is_none() && !self.sticking.is_empty() {
-            self.sticking.look(step.to, step.end(), self.equal)?;
-        }
-        self.kept = step.to;
-        Ok(stop)
-    }
-}
-
-/// A step as events ask it.
-struct Stepped<'a, 'b, 'c>(&'a mut Step<'b, 'c>);
-
-impl Interval for Stepped<'_, '_, '_> {
-    fn span(&self) -> (f64, f64) {
-        (self.0.from, self.0.to)
-    }
-
-    fn end(&self) -> &[f64] {
-        self.0.end()
-    }
-
-    fn at(&mut self, theta: f64) -> Result<&[f64]> {
-        self.0.between(theta)
-    }
 }
 
 /// What a run is driven with, whatever takes its steps.

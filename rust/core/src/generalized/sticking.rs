@@ -102,6 +102,12 @@ impl Sticking {
         self.switches.is_empty()
     }
 
+    /// What ended a run whose steps fell to nothing after that state, if that is a velocity that sticks.
+    pub(super) fn explains(&mut self, t: f64, y: &[f64]) -> Option<String> {
+        let soon = APART * (t - self.t0).abs();
+        self.switches.iter_mut().any(|switch| switch.holds(t, y, soon)).then(|| STUCK.to_owned())
+    }
+
     /// Looks at the end of a step; of one as long as all others at what the next will come to.
     ///
     /// # Errors

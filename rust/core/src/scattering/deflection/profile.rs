@@ -8,13 +8,15 @@ use super::grid::{Grid, POINTS, place, radius};
 use super::search::highest;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
-use crate::numerics::power_of_two::{exponent, power_of_two, scale};
+use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
 use crate::potentials::features::Features;
 use std::sync::Arc;
+use unit::unit_of_length;
 
 mod brackets;
 mod checks;
+mod unit;
 
 /// How far below an energy U is taken to touch it, as a part of what it is the sum of. By so little it makes no difference
 /// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
@@ -71,33 +73,6 @@ pub(super) struct Profile {
     last_value: f64,
     endless_delay: f64,
     power_from: f64,
-}
-
-/// Farther from one no length is looked for.
-const MOST_OCTAVES: i32 = 1000;
-
-/// So many octaves from the middle of the grid what happens is far from its ends.
-const IN_THE_MIDDLE: i32 = 32;
-
-/// The exponent of the unit of length of a potential that has none of its own: where something happens by its other
-/// parameters or, of a power of the distance, |V| is one, if that is nowhere near one.
-fn unit_of_length(potential: &dyn Potential) -> i32 {
-    let size = |exponent: i32| potential.at(power_of_two(exponent))[0].abs();
-    let place = potential.lengths().first().map_or_else(
-        || {
-            let (mut from, mut to) = (-MOST_OCTAVES, MOST_OCTAVES);
-            while to - from > 1 {
-                let middle = from + (to - from) / 2;
-                if size(middle) >= 1.0 { from = middle } else { to = middle }
-            }
-            from
-        },
-        |length| exponent(*length),
-    );
-    // What is nowhere one, or everywhere more, has no such place. Energies may be far from one as well: no farther from the
-    // caller's unit than it takes.
-    let told = place.abs() > IN_THE_MIDDLE && place.abs() < MOST_OCTAVES - IN_THE_MIDDLE;
-    if told { place - IN_THE_MIDDLE * place.signum() } else { 0 }
 }
 
 impl Profile {
