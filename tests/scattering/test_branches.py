@@ -222,3 +222,17 @@ def test_grazing_a_wall(angle: float) -> None:
         found = s.impact_parameter(sphere, energy=1.0, angle=angle)
         # At 1e-7 it is R, of which R − b = 2.5e-15 is beyond its digits there.
         assert found == pytest.approx([2.0 * np.cos(angle / 2.0)], rel=1e-15, abs=4e-15)
+
+
+@pytest.mark.parametrize("energy", [0.1, 0.8, 1.7, 5.0, 9.1234])
+def test_head_on_off_the_inverse_square(energy: float) -> None:
+    """ψ = π(1 − b/√(b² + k/E)): dσ/dΩ(π) = (k/E)/π², at the last angles of float64 as at π itself."""
+    expected = 1.0 / (energy * np.pi**2)
+    angles = np.array([np.pi, np.nextafter(np.pi, 0.0), np.pi - 1e-15, np.pi - 1e-14, np.pi - 1e-9])
+    found = s.cross_section(V.PowerLaw(1.0, 2), energy=energy, angle=angles)
+    # b of the last angles is rounded as what is missing to π: half a digit of 4e-16.
+    np.testing.assert_allclose(found[[0, 3, 4]], expected, rtol=2e-2, atol=0.0)
+    assert found[0] == pytest.approx(expected, rel=1e-14, abs=0.0)
+    assert (found[1:3] > 0.5 * expected).all()
+    assert (found[1:3] < 1.5 * expected).all()
+    assert s.impact_parameter(V.PowerLaw(1.0, 2), energy=energy, angle=np.pi).tolist() == [0.0]

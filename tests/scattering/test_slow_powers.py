@@ -48,3 +48,31 @@ def test_a_well_before_a_slow_power() -> None:
     strength = -n / (n - m) * (n / m) ** (m / (n - m))
     found = s.transport_cross_section(V.Mie(1.0, 1.0, n, m), energy=10.0)
     assert found == pytest.approx(by_hand(V.Mie(1.0, 1.0, n, m), 10.0, m, strength, 1), rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize("power", [1.02, 1.1, 1.5, 2.0, 3.0, 6.0])
+@pytest.mark.parametrize("orders", [(1, 1), (2, 2), (1, 3)])
+def test_means_of_powers_over_all_energies(power: float, orders: tuple[int, int]) -> None:
+    """Q ∝ E^(−2/n), so that ∫ Q e^(−x) x^(s+1) dx is Q(T) Γ(s + 2 − 2/n): much of it at slow collisions."""
+    order, s_ = orders
+    found = s.collision_integral(V.PowerLaw(1.0, power), temperature=1.0, diameter=1.0, orders=orders)
+    cross_section = s.transport_cross_section(V.PowerLaw(1.0, power), energy=1.0, order=order)
+    sphere = math.pi * (1.0 - (1.0 + (-1.0) ** order) / (2.0 * (1.0 + order)))
+    expected = cross_section / sphere * math.gamma(s_ + 2.0 - 2.0 / power) / math.factorial(s_ + 1)
+    # The mean is to 1e-9, its cross sections to 3e-9.
+    assert found == pytest.approx(expected, rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize("temperature", [1e2, 1e4, 1e6])
+def test_means_of_a_screened_charge_at_high_temperature(temperature: float) -> None:
+    """Q grows nearly as 1/E² towards slow collisions: over ln E by Gauss and Legendre, down to 1e-14 T."""
+    well = V.Yukawa(1.0, 1.0)
+    x, weights = np.polynomial.legendre.leggauss(16)
+    ends = np.linspace(-32.0, 4.2, 38)
+    half = 0.5 * np.diff(ends)[:, None]
+    logarithm = half * x + 0.5 * (ends[1:] + ends[:-1])[:, None]
+    share = np.exp(logarithm)
+    q = s.transport_cross_section(well, energy=temperature * share)
+    expected = float((half * weights * q * share**3 * np.exp(-share)).sum()) / (2.0 * math.pi)
+    found = s.collision_integral(well, temperature=temperature, diameter=1.0)
+    assert found == pytest.approx(expected, rel=1e-7, abs=0.0)

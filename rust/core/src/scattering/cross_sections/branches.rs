@@ -247,10 +247,14 @@ impl Structure<'_> {
             } else {
                 high = here
             }
-            if step <= 1e-15 * b || high.b - low.b <= 2.0 * f64::EPSILON * high.b {
+            // A halving that short is no sign of an end: beside an orbit ψ goes by whole turns from one b to the next.
+            if b == newton && step <= 1e-15 * b {
                 break;
             }
         }
-        Ok(Some(here))
+        let nearest = [low, high]
+            .into_iter()
+            .fold(here, |best, other| if sign(&other).abs() < sign(&best).abs() { other } else { best });
+        Ok(Some(nearest))
     }
 }

@@ -338,10 +338,19 @@ pub fn collision_integral(
     // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-11 of its largest, at eˣ = s + 2, outside of these.
     let power = f64::from(s + 2);
     let weight = |x: f64| power * x - Exponential::exp(x);
-    let least = -26.0 / power;
+    let mut least = -26.0 / power;
     let mut most = 3.9;
     while weight(most) > weight(ln(power)) - NEGLIGIBLE {
         most += 0.1;
+    }
+    // Cross sections that grow towards slow collisions, at most as 1/E², put more there.
+    let of = |x: f64, ticker: &mut Ticker<'_>| {
+        let energy = temperature * Exponential::exp(x);
+        Ok(weight(x) + ln(transport_to(IN_MEAN, deflector, energy, l, threads, ticker)?))
+    };
+    let most_of_all = of(ln(power), ticker)?;
+    while least > -26.0 / f64::from(s) && of(least, ticker)? > most_of_all - NEGLIGIBLE {
+        least -= LONGEST;
     }
     let mut marks = vec![least, most];
     marks.extend(deflector.critical_energies().iter().map(|energy| ln(energy / temperature)));

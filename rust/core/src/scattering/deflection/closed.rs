@@ -139,10 +139,12 @@ fn inverse_square(c: f64, b: f64) -> Deflection {
         return Deflection::captured();
     }
     let nearest = square.sqrt();
-    let angle = PI * (c / (nearest * (nearest + b)));
+    let short = PI * (b / nearest);
+    // Head-on, where V repels, it is π to the last digit.
+    let angle = if c > 0.0 && short < 1.0 { PI - short } else { PI * (c / (nearest * (nearest + b))) };
     Deflection {
         angle,
-        complement: if c > 0.0 { PI * (b / nearest) } else { PI - angle.abs() },
+        complement: if c > 0.0 { short } else { PI - angle.abs() },
         closest_approach: nearest,
         derivative: -PI * (c / (square * nearest)),
         delay: 0.0,

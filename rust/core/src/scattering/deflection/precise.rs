@@ -44,7 +44,7 @@ impl<'a> Precise<'a> {
             let rest = one - value * inverse_energy - ratio * ratio;
             let slope = (turning * force * inverse_energy).high() + 2.0 * (ratio * ratio).high();
             let part = rest / DoubleDouble::from(slope);
-            if !(part.high().abs() < FARTHEST) {
+            if part.high().is_nan() || part.high().abs() >= FARTHEST {
                 return None;
             }
             turning = turning * (one - part);
