@@ -16,6 +16,9 @@ const RETURNS: u32 = 4;
 /// Steps without one after which nothing sticks; and the part of the time since the start that returns are apart at most.
 const STEPS_BETWEEN: u32 = 200;
 const APART: f64 = 1e-6;
+/// Steps that are looked at together, in case they creep: by less than this part of the time since the start.
+const TOGETHER: u32 = 4096;
+const CREEPING: f64 = 1e-3;
 /// So near to the leap its sides are looked at, as a part of the velocity or of what a step changes it by.
 const BESIDE: f64 = 1e-9;
 
@@ -85,6 +88,9 @@ impl Switch {
 pub(super) struct Sticking {
     switches: Vec<Switch>,
     t0: f64,
+    /// Steps since the time that they are measured from.
+    steps: u32,
+    from: f64,
 }
 
 impl Sticking {
@@ -94,12 +100,23 @@ impl Sticking {
             let machine = Machine::new(code.clone(), parameters);
             Switch { machine, last: (0.0, 0.0), returns: 0, steps: 0, at: t0 }
         };
-        Self { switches: model.switches.iter().map(switch).collect(), t0 }
+        Self { switches: model.switches.iter().map(switch).collect(), t0, steps: 0, from: t0 }
     }
 
     /// Whether there is nothing to look at.
     pub(super) fn is_empty(&self) -> bool {
         self.switches.is_empty()
+    }
+
+    /// How far many steps have come, if they creep.
+    fn creeps(&mut self, t: f64) -> Option<f64> {
+        self.steps += 1;
+        if self.steps < TOGETHER {
+            return None;
+        }
+        let way = (t - self.from).abs();
+        (self.steps, self.from) = (0, t);
+        (way <= CREEPING * (t - self.t0).abs()).then_some(way)
     }
 
     /// What ended a run whose steps fell to nothing after that state, if that is a velocity that sticks.
@@ -113,8 +130,9 @@ impl Sticking {
     /// # Errors
     /// [`Error::Convergence`] where a velocity sticks.
     pub(super) fn look(&mut self, t: f64, y: &[f64], equal: Option<f64>) -> Result<()> {
+        let ahead = equal.map(f64::abs).or_else(|| self.creeps(t));
         for switch in &mut self.switches {
-            if equal.is_some_and(|h| switch.holds(t, y, h.abs())) {
+            if ahead.is_some_and(|h| switch.holds(t, y, h)) {
                 return Err(Error::Convergence { message: STUCK.to_owned(), time: t });
             }
             let (value, rate) = along(&mut switch.machine, t, y);

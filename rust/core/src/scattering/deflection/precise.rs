@@ -11,8 +11,10 @@ use crate::numerics::real::Real;
 
 /// Newton's steps to a turning point at most, from one with the digits of a float64.
 const STEPS: usize = 6;
-/// A step that is a smaller part of the turning point was the last, …
+/// A step that is a smaller part of the turning point was the last, or one from where no more is left of 1 − V/E − b²/r², as
+/// rounding leaves, …
 const LAST: f64 = 1.0 / (1_u128 << 80) as f64;
+const ROUNDED: f64 = 1.0 / (1_u128 << 96) as f64;
 /// … and one that is a larger part of it leads elsewhere.
 const FARTHEST: f64 = 1.0 / (1 << 16) as f64;
 /// So near two values of V still differ by what the force says, …
@@ -48,7 +50,7 @@ impl<'a> Precise<'a> {
                 return None;
             }
             turning = turning * (one - part);
-            if part.high().abs() < LAST {
+            if part.high().abs() < LAST || rest.high().abs() < ROUNDED {
                 let ratio = impact / turning;
                 let found = Self { profile, inverse_energy, turning, value: one - ratio * ratio };
                 return found.has_digits().then_some(found);
