@@ -6,6 +6,7 @@ deflection function and of quadratures over it, 1e-14 and, by a rule of sixty po
 
 from __future__ import annotations
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -225,6 +226,28 @@ def test_grazing_a_wall(angle: float) -> None:
 
 
 @pytest.mark.parametrize("energy", [0.1, 0.8, 1.7, 5.0, 9.1234])
+def barrier(share: mp.mpf) -> mp.mpf:
+    """2π ∫ (1 − cos ψ) b db of a barrier of radius 1, that part of the energy: refracted, and reflected beyond."""
+    n = mp.sqrt(1 - share)
+    through = mp.quad(
+        lambda b: (1 - mp.cos(2 * (mp.asin(b / n) - mp.asin(b)))) * b,
+        [0, n / 2, n * (1 - share / 4), n * (1 - share / 64), n * (1 - share / 4096), n],
+    )
+    # cos ψ = 2b² − 1 where it turns back.
+    reflected = (1 - n**2) - (1 - n**4) / 2
+    return 2 * mp.pi * (through + reflected)
+
+
+@pytest.mark.parametrize("energy", [2.0, 30.0, 1e3, 1e6])
+def test_transport_of_a_low_barrier(energy: float) -> None:
+    """The rim of total reflection is E⁻¹/2 of the radius beside that of the barrier."""
+    with mp.workdps(40):
+        expected = float(barrier(1 / mp.mpf(energy)))
+    found = s.transport_cross_section(V.SquareWell(-1.0, 1.0), energy=energy)
+    # b is a double: 1e-16 of a rim of 1/(2E).
+    assert found == pytest.approx(expected, rel=1e-10 + 1e-15 * energy, abs=0.0)
+
+
 def test_head_on_off_the_inverse_square(energy: float) -> None:
     """ψ = π(1 − b/√(b² + k/E)): dσ/dΩ(π) = (k/E)/π², at the last angles of float64 as at π itself."""
     expected = 1.0 / (energy * np.pi**2)

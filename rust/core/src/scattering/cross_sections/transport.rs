@@ -241,12 +241,15 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
             }
         }
     };
+    // A rim of V may be beside another, nearer than an orbit is looked at.
+    let rim = |b: f64| edges.iter().any(|edge| edge.impact_parameter == b && edge.orbit.is_none());
+    let nearest = |b: f64, most: f64| if rim(b) { most - NEAREST } else { (ln(b) - NEAREST).min(most - 1.0) };
     for pair in ends.windows(2) {
         let [low, high] = [pair[0], pair[1]];
         let middle = if high < f64::INFINITY { 0.5 * (low + high) } else { low + length };
         if low > 0.0 {
             let most = ln(middle - low);
-            add(Way::Near(low, 1.0), (ln(low) - NEAREST).min(most - 1.0), most);
+            add(Way::Near(low, 1.0), nearest(low, most), most);
         } else if high == f64::INFINITY {
             add(Way::Far(length), -FARTHEST, 0.0);
         } else {
@@ -254,7 +257,7 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
         }
         if high < f64::INFINITY {
             let most = ln(high - middle);
-            let nearest = (ln(high) - NEAREST).min(most - 1.0);
+            let nearest = nearest(high, most);
             add(Way::Near(high, -1.0), nearest, most);
             if high == range {
                 // On the last of a weak well angles are larger than anywhere, however thin it is: less than b is rounded by
