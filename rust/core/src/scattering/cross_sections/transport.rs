@@ -259,7 +259,7 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
             let most = ln(high - middle);
             let nearest = nearest(high, most);
             add(Way::Near(high, -1.0), nearest, most);
-            if high == range {
+            if high == range || rim(high) {
                 // On the last of a weak well angles are larger than anywhere, however thin it is: less than b is rounded by
                 // is left out or counted twice there.
                 add(Way::Beside(high), 0.0, Exponential::exp(nearest));
