@@ -41,9 +41,9 @@ def test_the_error_of_gauss4_and_gauss8_follows_rtol(method: str, name: str) -> 
     runs = [system.run(20.0, method=method, rtol=rtol) for rtol in tolerances]
     errors = np.array([np.abs(states(out)[-1] - exact).max() for out in runs])
     steps = np.array([out.steps for out in runs])
-    # A step that is held may lead 30 times farther astray than it is to before it is given up: its error goes with the
-    # power (2s + 1)/(s + 1) of that, which is 290 and 455. The pendulum and the drag make errors larger, too.
-    assert (errors <= (50.0 if name == "dragged" else 500.0) * steps * tolerances).all(), errors / (steps * tolerances)
+    # A step that is held is given up where it leads four times farther astray than it is to, and as far as belongs to the
+    # tolerance. The pendulum makes errors larger; measured 1.7.
+    assert (errors <= 3.0 * steps * tolerances).all(), errors / (steps * tolerances)
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     # Which step is held hangs on ten of them; without holding, steps and errors follow their powers.
     assert 0.65 < slope < 1.25
