@@ -41,7 +41,7 @@ def test_the_error_of_gauss4_and_gauss8_follows_rtol(method: str, name: str) -> 
     runs = [system.run(20.0, method=method, rtol=rtol) for rtol in tolerances]
     errors = np.array([np.abs(states(out)[-1] - exact).max() for out in runs])
     steps = np.array([out.steps for out in runs])
-    # A step that is held is given up where it leads four times farther astray than it is to, and as far as belongs to the
+    # A step that is held is given up where it leads four times farther astray than it is to: as far as belongs to the
     # tolerance. The pendulum makes errors larger; measured 1.7.
     assert (errors <= 3.0 * steps * tolerances).all(), errors / (steps * tolerances)
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
