@@ -19,6 +19,7 @@ from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._audit_third_law import ThirdLaw, third_law
+from visviva._differences import ROUNDING, derivatives
 from visviva._expression_table import looks_at_time, looks_at_velocities
 from visviva._html import Record
 from visviva._keywords import known_keywords, unknown_name
@@ -52,13 +53,6 @@ __all__ = [
     "work",
     "work_along",
 ]
-
-_NEAR = 2.0**-10
-"""The step of differences, of the size of what is looked at: fourth order errs by 1e-12 there, rounding by as much."""
-_STEPS = 6
-"""Steps that are tried, each an eighth of the one before: to 3e-8 of the size."""
-_ROUNDING = 1e-8
-"""What such differences err by at most, of fields that bend over a thousandth of the size or more."""
 
 
 def __dir__() -> list[str]:
@@ -369,37 +363,9 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     x = float_array("places", places, (None, 3))
     if len(x) == 0:
         raise InvalidInput("places", "expected one place at least, got none")
-    d, rounded = _derivatives(at, x)
+    d, rounded = derivatives(at, x)
     value = np.stack([d[:, 2, 1] - d[:, 1, 2], d[:, 0, 2] - d[:, 2, 0], d[:, 1, 0] - d[:, 0, 1]], axis=-1)
     # Beside a field that hardly changes all derivatives are rounding.
-    size = np.maximum(np.abs(d).max(axis=(1, 2)), rounded / _ROUNDING)
+    size = np.maximum(np.abs(d).max(axis=(1, 2)), rounded / ROUNDING)
     relative = float(np.max(np.abs(value).max(axis=1) / np.where(size > 0.0, size, 1.0)))
-    return Curl(value, relative, relative <= _ROUNDING)
-
-
-def _derivatives(at: _Field, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of each component along each axis at each place, by the step of which a shorter one says the same; its rounding.
-
-    Over what length a field bends is not known: its center may be near a place that is far from the origin.
-    """
-    sizes = np.abs(x).max(axis=1)
-    sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), np.finfo(float).tiny))[:, None, None]
-    best, least, before = np.zeros((len(x), 3, 3)), np.full(len(x), np.inf), None
-    rounded, rounded_before = np.zeros(len(x)), np.zeros(len(x))
-    for shorter in range(_STEPS):
-        h = _NEAR * 8.0**-shorter * sizes
-        now, largest = np.zeros((len(x), 3, 3)), np.zeros(len(x))
-        for axis in range(3):
-            moved = [x + k * h[:, 0] * np.eye(3)[axis] for k in (-2, -1, 1, 2)]
-            f = [float_array("force", at(place), x.shape) for place in moved]
-            now[:, :, axis] = (f[0] - 8.0 * f[1] + 8.0 * f[2] - f[3]) / (12.0 * h[:, 0])
-            largest = np.maximum(largest, np.abs(f).max(axis=(0, 2)))
-        # Two derivatives make a component of the curl, each of four values with a rounding or two of their own.
-        rounding = 4.0 * np.finfo(float).eps * largest / h[:, 0, 0]
-        if before is not None:
-            change = np.abs(now - before).max(axis=(1, 2))
-            better = (change < least) | ~np.isfinite(least)
-            # The longer of both has less rounding.
-            best[better], least[better], rounded[better] = before[better], change[better], rounded_before[better]
-        before, rounded_before = now, rounding
-    return best, rounded
+    return Curl(value, relative, relative <= ROUNDING)

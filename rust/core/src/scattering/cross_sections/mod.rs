@@ -3,15 +3,18 @@
 //! The one idea: between its edges, where something orbits or V ends, ψ(b) is smooth, and between the zeros of dψ/db,
 //! which are the rainbows, it is monotone. So a grid that is fine wherever ψ may bend, with the analytic derivative on
 //! it, cuts the line of impact parameters into monotone stretches, and every question of which b leads to an angle is a
-//! bracketed root on each of them (`branches`). Integrals over b go by the same edges (`transport`).
+//! bracketed root on each of them (`branches`). Integrals over b go by the same edges (`transport`), and means of those by
+//! the energies where orbits begin (`collision_integral`).
 //! Sources: Goldstein, Poole & Safko, *Classical Mechanics* (3rd ed.), §3.10–3.11; K. W. Ford, J. A. Wheeler, Ann.
 //! Phys. 7 (1959) 259; J. O. Hirschfelder, C. F. Curtiss, R. B. Bird, *Molecular Theory of Gases and Liquids* (1954), §8.2.
 
 mod branches;
+mod collision_integral;
 mod transport;
 
 pub use branches::Branch;
-pub use transport::{OF_ANGLES_IN_MEAN, collision_integral, transport};
+pub use collision_integral::{OF_ANGLES_IN_MEAN, collision_integral};
+pub use transport::transport;
 
 use super::deflection::{Deflection, Deflector, Edge, Status};
 use crate::Result;

@@ -1,4 +1,4 @@
-//! Integrals over impact parameters and energies: transport cross sections Q^(l)(E) and collision integrals Ω^(l,s)(T).
+//! Integrals over impact parameters: transport cross sections Q^(l)(E).
 //!
 //! The one idea: every integrand is smooth in the logarithm of the distance to an edge, since near orbiting ψ is linear
 //! in it, and in the logarithm of b far out. So intervals go by those, and are halved, all at once, where two rules differ.
@@ -9,7 +9,7 @@ use super::super::kronrod::{self, POINTS};
 use crate::numerics::angles::sin;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::elementary::{Exponential, ln};
-use crate::parallel::{Ticker, for_chunks};
+use crate::parallel::Ticker;
 use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::PI;
@@ -19,19 +19,11 @@ const ROUNDS: usize = 40;
 const MOST_INTERVALS: usize = 6000;
 /// The tolerance of a cross section, relative.
 const TOLERANCE: f64 = 1e-10;
-/// That of those that are averaged, and of the average.
-const IN_MEAN: f64 = 3e-9;
-/// And of the angles in them.
-pub const OF_ANGLES_IN_MEAN: f64 = 1e-10;
-const MEAN: f64 = 1e-9;
 /// How near to an edge and how far out intervals go, as exponents of e.
 const NEAREST: f64 = 26.0;
 const FARTHEST: f64 = 40.0;
-/// Rounds of halving of intervals of energy: each costs fifteen cross sections an interval. Where orbits begin to be the
-/// mean bends sharply, and what is left of it there is half as much each time.
-const MOST_ROUNDS: usize = 14;
 /// Intervals are no longer than this at first.
-const LONGEST: f64 = 2.0;
+pub(super) const LONGEST: f64 = 2.0;
 
 /// How a variable of an interval makes an impact parameter.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +107,11 @@ pub fn transport(
     transport_to(TOLERANCE, deflector, energy, l, threads, ticker)
 }
 
-fn transport_to(
+/// The same to a tolerance.
+///
+/// # Errors
+/// As [`transport`].
+pub(super) fn transport_to(
     tolerance: f64,
     deflector: &Deflector,
     energy: f64,
@@ -307,7 +303,7 @@ fn evaluate(
 }
 
 /// The integral and how far it may be off.
-fn both_rules(ends: [f64; 2], values: &[f64]) -> [f64; 2] {
+pub(super) fn both_rules(ends: [f64; 2], values: &[f64]) -> [f64; 2] {
     let found = kronrod::estimate(ends, |k| values[k]);
     [found.integral, found.error]
 }
@@ -319,85 +315,4 @@ fn less_than_one(angle: f64, l: u32) -> f64 {
     let cosine = 1.0 - less;
     let powers = (1..l).fold(1.0, |sum, _| sum * cosine + 1.0);
     less * powers
-}
-
-/// What a weight is to be less than, as a logarithm: 2e-12.
-const NEGLIGIBLE: f64 = 27.0;
-
-/// Ω^(l,s)*(T) = ∫ Q^(l)(E) e^(−E/T) E^(s+1) dE / ((s + 1)! T^(s+2) π d² (1 − (1 + (−1)^l)/(2(1 + l)))): in units of what
-/// hard spheres of diameter `d` have. T is k_B times the temperature, an energy.
-///
-/// # Errors
-/// As [`transport`].
-pub fn collision_integral(
-    deflector: &Deflector,
-    temperature: f64,
-    orders: (u32, u32),
-    diameter: f64,
-    threads: usize,
-    ticker: &mut Ticker<'_>,
-) -> Result<f64> {
-    let (l, s) = orders;
-    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-11 of its largest, at eˣ = s + 2, outside of these.
-    let power = f64::from(s + 2);
-    let weight = |x: f64| power * x - Exponential::exp(x);
-    let mut least = -26.0 / power;
-    let mut most = 3.9;
-    while weight(most) > weight(ln(power)) - NEGLIGIBLE {
-        most += 0.1;
-    }
-    // Cross sections that grow towards slow collisions, at most as 1/E², put more there.
-    let of = |x: f64, ticker: &mut Ticker<'_>| {
-        let energy = temperature * Exponential::exp(x);
-        Ok(weight(x) + ln(transport_to(IN_MEAN, deflector, energy, l, threads, ticker)?))
-    };
-    let most_of_all = of(ln(power), ticker)?;
-    while least > -26.0 / f64::from(s) && of(least, ticker)? > most_of_all - NEGLIGIBLE {
-        least -= LONGEST;
-    }
-    let mut marks = vec![least, most];
-    marks.extend(deflector.critical_energies().iter().map(|energy| ln(energy / temperature)));
-    marks.retain(|x| (least..=most).contains(x));
-    marks.sort_by(f64::total_cmp);
-    marks.dedup();
-    let mut pending: Vec<[f64; 2]> = Vec::new();
-    for pair in marks.windows(2) {
-        let parts = ((pair[1] - pair[0]) / LONGEST).ceil().max(1.0);
-        let at = |k: f64| (pair[1] - pair[0]).mul_add(k / parts, pair[0]);
-        pending.extend((0..parts as usize).map(|part| [at(part as f64), at(part as f64 + 1.0)]));
-    }
-    let factorial: f64 = (1..=s + 1).map(f64::from).product();
-    let mut done: Vec<f64> = Vec::new();
-    for round in 0..MOST_ROUNDS {
-        let points: Vec<f64> =
-            pending.iter().flat_map(|ends| (0..POINTS).map(|k| kronrod::place(*ends, k))).collect();
-        // Energies side by side: each takes its time.
-        let values = for_chunks(threads, points.len(), ticker, |at, ticker| {
-            let share = Exponential::exp(points[at]);
-            let weight = Exponential::exp(power * points[at] - share) / factorial;
-            let found = transport_to(IN_MEAN, deflector, temperature * share, l, 1, ticker)?;
-            Ok(weight * found)
-        })?;
-        let found: Vec<[f64; 2]> = pending
-            .iter()
-            .zip(values.chunks(POINTS))
-            .map(|(ends, values)| both_rules(*ends, values))
-            .collect();
-        let whole: f64 = done.iter().sum::<f64>() + found.iter().map(|[value, _]| value).sum::<f64>();
-        let mut next = Vec::new();
-        for (ends, [value, off]) in pending.iter().zip(&found) {
-            if *off <= MEAN * whole || round + 1 == MOST_ROUNDS {
-                done.push(*value);
-            } else {
-                let middle = 0.5 * (ends[0] + ends[1]);
-                next.extend([[ends[0], middle], [middle, ends[1]]]);
-            }
-        }
-        pending = next;
-        if pending.is_empty() {
-            break;
-        }
-    }
-    let sphere = 1.0 - f64::from(1 + if l % 2 == 0 { 1 } else { -1 }) / (2.0 * f64::from(1 + l));
-    Ok(done.iter().sum::<f64>() / (PI * diameter * diameter * sphere))
 }
