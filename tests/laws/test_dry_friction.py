@@ -61,3 +61,27 @@ def test_many_short_steps_are_no_sticking() -> None:
     stiff = thrown(lambda r, v, t: [-1e4 * (v[0] - 1e-3), 0.0 * v[0], 0.0 * v[0]], [0.0, 0.0, 0.0])
     out = stiff.run([0.0, 100.0], max_steps=3_000_000)
     assert float(out.position[-1, 0, 0]) == pytest.approx(1e-3 * (100.0 - 1e-4), rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("bodies", [3, 20])
+def test_among_many_bodies_with_their_own_masses(bodies: int) -> None:
+    """Beside another force, a unit in one lane and in all: each copy ends as alone, on one thread and on three."""
+    random = np.random.default_rng(bodies)
+    mass = random.uniform(0.5, 2.0, bodies)
+    position, velocity = 10.0 * random.normal(size=(bodies, 3)), random.normal(size=(bodies, 3))
+
+    def in_space(r: Any, v: Any, t: Any) -> list[Any]:
+        speed = np.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2)
+        return [-0.5 * v[k] / speed for k in range(3)]
+
+    scene = vv.Scene(vv.Particles(mass, position, velocity), vv.Gravity(G=1e-4), vv.ExpressionForce(force=in_space))
+    copies = scene.ensemble(mass=np.array([mass * (1.0 + 0.1 * k) for k in range(5)]))
+    runs = [copies.run([0.0, 50.0], threads=threads, method="dop853") for threads in (1, 3)]
+    for out in runs:
+        assert (out.status == vv.Status.STEP_FAILURE).all()
+        assert out.stats.steps == runs[0].stats.steps
+    with pytest.raises(vv.ConvergenceError, match="sticks at zero") as stuck:
+        copies[2].run([0.0, 50.0], method="dop853")
+    # The first to come to rest: mass times speed over the friction.
+    first = float((mass * 1.2 * np.linalg.norm(velocity, axis=1) / 0.5).min())
+    assert stuck.value.time == pytest.approx(first, abs=2e-2)
