@@ -4,6 +4,8 @@
 //! have the same layout and the same results, so a slice of one can be viewed as a slice of another.
 //! Those two stay within the crate: their instructions may run only where `tiered!` has seen that there are any.
 
+pub use words::Words;
+
 use super::double_double::{DoubleDouble, two_product};
 use super::real::{Mask, Real};
 
@@ -58,6 +60,8 @@ impl Bits {
 pub trait Vector8: Real<Mask = Bits> + sealed::Sealed {
     /// How many of them a processor's registers hold.
     const REGISTERS: usize;
+    /// Eight integers of the tier.
+    type Words: Words;
     /// A slice of lanes seen as this tier's.
     #[inline(always)]
     fn view(lanes: &[Lanes]) -> &[Self] {
@@ -198,6 +202,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod portable;
+mod words;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]

@@ -14,7 +14,7 @@
 //! A new need takes a new draw or a new stream and changes no number of those in use.
 //! Source: Salmon, Moraes, Dror & Shaw, *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011).
 
-use super::lanes::WIDTH;
+use super::lanes::{Vector8, WIDTH, Words};
 
 /// The key: a seed's low and high word.
 pub type Key = [u32; 2];
@@ -54,6 +54,9 @@ pub const fn philox(key: Key, counter: [u32; 4]) -> [u32; 4] {
 /// How many bits a draw has: the significand of an `f64`.
 pub const DRAW_BITS: u32 = 53;
 
+/// How many of 64 random bits are left out.
+const DROPPED: u32 = 64 - DRAW_BITS;
+
 /// 53 random bits; there is no other way to make one, so whoever is given one may rely on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(transparent)]
@@ -63,7 +66,7 @@ impl Draw {
     /// The upper 53 of 64 random bits.
     #[inline(always)]
     pub const fn of(bits: u64) -> Self {
-        Self(bits >> (64 - DRAW_BITS))
+        Self(bits >> DROPPED)
     }
     /// As a number below 2^53.
     #[inline(always)]
@@ -98,39 +101,30 @@ crate::tiered! {
     pub fn fill_draws[][](key: Key, block: u64, number: u32, draws: &mut [[Draw; DRAWS]]) = draws_body;
 }
 
-/// Eight blocks at a time, written so that the compiler makes vectors of it: each 32-bit word stays in
-/// the low half of a 64-bit lane.
-#[expect(clippy::extra_unused_type_parameters, reason = "integers know no tier, but `tiered!` names one")]
+/// Eight blocks at a time, each 32-bit word in the low half of a lane. What lies above in those that were products is
+/// never used: a product takes the low halves only.
 #[inline(always)]
-fn draws_body<V>(key: Key, mut block: u64, number: u32, draws: &mut [[Draw; DRAWS]]) {
+fn draws_body<V: Vector8>(key: Key, mut block: u64, number: u32, draws: &mut [[Draw; DRAWS]]) {
+    let mut keys = [[0_u64; 2]; ROUNDS as usize];
+    for (round, key_of_round) in keys.iter_mut().enumerate() {
+        let [k0, k1] = round_key(key, round as u32);
+        *key_of_round = [u64::from(k0), u64::from(k1)];
+    }
     for sixteen in draws {
-        let low = |x: u64| x & 0xffff_ffff;
-        let mut x0 = [0_u64; WIDTH];
-        let mut x1 = [0_u64; WIDTH];
-        for lane in 0..WIDTH {
-            let counter = block.wrapping_add(lane as u64);
-            x0[lane] = counter;
-            x1[lane] = counter >> 32;
+        let mut x0 = V::Words::load(core::array::from_fn(|lane| block.wrapping_add(lane as u64)));
+        let mut x1 = x0.shifted_down::<32>();
+        let mut x2 = V::Words::splat(u64::from(number));
+        let mut x3 = V::Words::splat(u64::from(STREAM));
+        for [k0, k1] in keys {
+            let (k0, k1) = (V::Words::splat(k0), V::Words::splat(k1));
+            let (p0, p1) = (x0.product(MULTIPLIERS[0]), x2.product(MULTIPLIERS[1]));
+            (x0, x1) = (p1.shifted_down::<32>() ^ x1 ^ k0, p1);
+            (x2, x3) = (p0.shifted_down::<32>() ^ x3 ^ k1, p0);
         }
-        let mut x2 = [u64::from(number); WIDTH];
-        let mut x3 = [u64::from(STREAM); WIDTH];
-        for round in 0..ROUNDS {
-            let [k0, k1] = round_key(key, round);
-            for lane in 0..WIDTH {
-                // What lies above the low 32 bits of x1 and x3 is never used: a product takes the low
-                // halves only. This is one widening multiplication of vector registers.
-                let p0 = low(x0[lane]) * u64::from(MULTIPLIERS[0]);
-                let p1 = low(x2[lane]) * u64::from(MULTIPLIERS[1]);
-                x0[lane] = p1 >> 32 ^ x1[lane] ^ u64::from(k0);
-                x1[lane] = p1;
-                x2[lane] = p0 >> 32 ^ x3[lane] ^ u64::from(k1);
-                x3[lane] = p0;
-            }
-        }
-        for lane in 0..WIDTH {
-            sixteen[2 * lane] = Draw::of(x1[lane] << 32 | low(x0[lane]));
-            sixteen[2 * lane + 1] = Draw::of(x3[lane] << 32 | low(x2[lane]));
-        }
+        let mut bits = [0; DRAWS];
+        let (even, odd) = (x0.below(x1), x2.below(x3));
+        even.shifted_down::<DROPPED>().interleave(odd.shifted_down::<DROPPED>(), &mut bits);
+        *sixteen = bits.map(Draw);
         block = block.wrapping_add(WIDTH as u64);
     }
 }

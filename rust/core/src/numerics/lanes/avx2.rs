@@ -199,6 +199,7 @@ impl super::sealed::Sealed for Avx2 {}
 
 impl Vector8 for Avx2 {
     const REGISTERS: usize = 8;
+    type Words = super::words::Avx2Words;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         let from = lanes.0.as_ptr();
@@ -215,7 +216,8 @@ impl Vector8 for Avx2 {
     }
     #[inline(always)]
     fn permute(self, index: &[i64; WIDTH]) -> Self {
-        Self::load(self.store().permute(index))
+        let (low, high) = index.split_at(WIDTH / 2);
+        Self(chosen(self, low), chosen(self, high))
     }
     #[inline(always)]
     fn sum_in_every_lane(self) -> Self {
@@ -234,6 +236,23 @@ impl Vector8 for Avx2 {
             write_half_where(self.0, mask, to);
             write_half_where(self.1, Bits(mask.0 >> 4), to.wrapping_add(WIDTH / 2));
         }
+    }
+}
+
+/// Four lanes of the eight: of each half those that the last two bits say, and of these the half that the third says.
+/// Through memory it would be eight loads that wait for a store.
+#[inline(always)]
+fn chosen(from: Avx2, index: &[i64]) -> Avx2Half {
+    debug_assert!(index.len() == WIDTH / 2);
+    unsafe {
+        let index = _mm256_loadu_si256(index.as_ptr().cast());
+        // Lane i is the pair of 32-bit words 2i and 2i + 1.
+        let pair = _mm256_shuffle_epi32::<0b10_10_00_00>(_mm256_slli_epi64::<1>(index));
+        let words = _mm256_add_epi32(pair, _mm256_setr_epi32(0, 1, 0, 1, 0, 1, 0, 1));
+        let of = |half: Avx2Half| _mm256_permutevar8x32_ps(_mm256_castpd_ps(half.0), words);
+        let in_high = _mm256_castsi256_pd(_mm256_slli_epi64::<61>(index));
+        let (low, high) = (_mm256_castps_pd(of(from.0)), _mm256_castps_pd(of(from.1)));
+        Avx2Half(_mm256_blendv_pd(low, high, in_high))
     }
 }
 

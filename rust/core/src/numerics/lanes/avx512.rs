@@ -82,6 +82,7 @@ impl super::sealed::Sealed for Avx512 {}
 
 impl Vector8 for Avx512 {
     const REGISTERS: usize = 32;
+    type Words = super::words::Avx512Words;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         Self(unsafe { _mm512_load_pd(lanes.0.as_ptr()) })

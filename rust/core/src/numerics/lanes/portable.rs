@@ -135,6 +135,7 @@ impl Real for Lanes {
 
 impl Vector8 for Lanes {
     const REGISTERS: usize = 4;
+    type Words = super::words::Portable;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         lanes
