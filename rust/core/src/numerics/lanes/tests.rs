@@ -65,6 +65,46 @@ proptest! {
     }
 }
 
+/// Every operation on words, and what is lost on the way down.
+#[inline(always)]
+fn exercise_words<V: Vector8>(a: [u64; WIDTH], b: [u64; WIDTH]) -> [u64; 2 * WIDTH] {
+    let (a, b) = (V::Words::load(a), V::Words::load(b));
+    let mixed = a.product(0xd251_1f53) ^ b.shifted_down::<11>() ^ V::Words::splat(0x0123_4567_89ab_cdef);
+    let mut words = [0; 2 * WIDTH];
+    mixed.below(b).interleave(a.below(mixed), &mut words);
+    words
+}
+
+crate::tiered! {
+    fn exercised_words[][](a: [u64; WIDTH], b: [u64; WIDTH]) -> [u64; 2 * WIDTH] = exercise_words;
+}
+
+proptest! {
+    #[test]
+    fn words_are_those_of_integers_on_every_tier(a: [u64; WIDTH], b: [u64; WIDTH]) {
+        let half = |x: u64| x & 0xffff_ffff;
+        let expected: Vec<u64> = a
+            .into_iter()
+            .zip(b)
+            .flat_map(|(a, b)| {
+                let mixed = half(a) * 0xd251_1f53 ^ b >> 11 ^ 0x0123_4567_89ab_cdef;
+                [half(b) << 32 | half(mixed), half(mixed) << 32 | half(a)]
+            })
+            .collect();
+        prop_assert_eq!(&exercise_words::<Lanes>(a, b)[..], &expected[..]);
+        prop_assert_eq!(&exercised_words(a, b)[..], &expected[..]);
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2(a: [u64; WIDTH], b: [u64; WIDTH]) -> [u64; 2 * WIDTH] {
+                exercise_words::<Avx2>(a, b)
+            }
+            // SAFETY: the machine has AVX2 and FMA.
+            prop_assert_eq!(&unsafe { avx2(a, b) }[..], &expected[..]);
+        }
+    }
+}
+
 #[test]
 fn interleaved_coordinates_are_points() {
     let coordinates: [Lanes; 3] =
