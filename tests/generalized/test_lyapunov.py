@@ -64,3 +64,45 @@ def test_henon_and_heiles() -> None:
     assert np.abs(chaotic[1:3]).max() < 0.003
     assert chaotic[0] + chaotic[3] == pytest.approx(0.0, abs=0.001)
     assert abs(from_a_place(0.1).lyapunov_exponents(5000.0)[0]) < 0.0025
+
+
+WALLS = {
+    "exp": lambda x: np.exp(x),
+    "Morse": lambda x: (1.0 - np.exp(-x)) ** 2,
+    "Gauss": lambda x: -np.exp(-x * x),
+    "tanh": lambda x: np.tanh(3.0 * x) ** 2,
+    "cosh": lambda x: np.cosh(x),
+    "narrow": lambda x: x * x / 2.0 + 0.01 / np.cosh(40.0 * (x - 1.0)) ** 2,
+}
+
+
+@pytest.mark.parametrize("wall", WALLS)
+def test_in_a_potential_with_functions_that_may_be_narrow(wall: str) -> None:
+    """What steps are watched for reads the derivatives' whole state: Φ carries the rates along, and keeps areas."""
+    system = vv.Hamiltonian(
+        lambda q, p, t: p[0] ** 2 / 2.0 + WALLS[wall](q[0]), ["x"], position=[0.8], momentum=[0.3]
+    )
+    t = 2.5
+    flow = system.flow_jacobian(t)
+    out = system.run([0.0, t], rtol=1e-13)
+
+    def rates(k: int) -> list[float]:
+        # −dV/dx by a difference of four places, to some 1e-12.
+        x, h = out.position[k, 0], 1e-3
+        v = [WALLS[wall](x + i * h) for i in (-2, -1, 1, 2)]
+        return [out.momentum[k, 0], -(v[0] - 8.0 * v[1] + 8.0 * v[2] - v[3]) / (12.0 * h)]
+
+    # The fifth derivative of the narrow one is 0.01 × 40⁵, times h⁴/30.
+    within = 1e-6 if wall == "narrow" else 1e-10
+    assert flow @ rates(0) == pytest.approx(rates(1), rel=0, abs=within)
+    assert np.linalg.det(flow) == pytest.approx(1.0, rel=0, abs=1e-10)
+    assert abs(system.lyapunov_exponents(t).sum()) < 1e-10
+
+
+def test_a_drive_that_may_be_faster_than_a_step() -> None:
+    """x'' = −x + cos 40 t: the derivatives are a turn of the plane, whatever drives it."""
+    driven = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 - q[0] ** 2) / 2.0 + q[0] * np.cos(40.0 * t), ["x"], position=[0.8], velocity=[0.3]
+    )
+    c, s = np.cos(2.5), np.sin(2.5)
+    assert driven.flow_jacobian(2.5) == pytest.approx(np.array([[c, s], [-s, c]]), rel=0, abs=1e-12)

@@ -124,10 +124,19 @@ impl Model {
         };
         model.needs = model.what_is_looked_at();
         model.projection = Projection::new(&mut model)?;
-        model.switches = sticking::switches(&mut model)?;
-        model.divisors = Divisors::of(&model)?;
-        model.narrow = Features::of(&mut model)?.map(Arc::new);
+        model.set_watched()?;
         Ok(model)
+    }
+
+    /// Finds what is watched on the way, by code that reads a whole state and its rates.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub(super) fn set_watched(&mut self) -> Result<()> {
+        self.switches = sticking::switches(self)?;
+        self.divisors = Divisors::of(self)?;
+        self.narrow = Features::of(self)?.map(Arc::new);
+        Ok(())
     }
 
     /// Numbers of a state.

@@ -174,8 +174,7 @@ impl Watched {
 }
 
 fn outputs(machine: &mut Machine<f64>, t: f64, y: &[f64]) -> Vec<f64> {
-    // Derivatives of the flow may follow, by which nothing is divided.
-    machine.state().iter_mut().zip(y).for_each(|(number, &value)| *number = value);
+    machine.state().copy_from_slice(y);
     machine.run(t);
     (0..machine.code().outputs()).map(|i| machine.output(i)).collect()
 }

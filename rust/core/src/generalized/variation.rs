@@ -72,5 +72,6 @@ pub fn variational(model: &Model) -> Result<Model> {
     model.form = Form::FirstOrder(model.numbers);
     let inputs = (model.numbers, model.source.parameters);
     model.code = Arc::new(compile(&model.source.graph, inputs, &[], &model.rates)?);
+    model.set_watched()?;
     Ok(model)
 }
