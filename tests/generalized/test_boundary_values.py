@@ -113,3 +113,26 @@ def test_a_double_pendulum_from_a_wild_start(seed: int) -> None:
 def test_no_time_to_arrive_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match="another time than the start"):
         vv.systems.pendulum(position=[0.1]).boundary_value(0.0, [0.4])
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-8, np.pi / 2, 1.0])
+@pytest.mark.parametrize("far", [1.0, 2.0])
+def test_half_an_orbit_however_its_axes_are_turned(angle: float, far: float) -> None:
+    """From pericenter to apocenter in half a period: a coordinate that is zero at both ends is not small on the way."""
+
+    def turned(x: float, y: float) -> list[float]:
+        return [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)]
+
+    # a = (1 + far)/2, v² = 2 − 1/a at r = 1.
+    semi_major_axis = (1.0 + far) / 2.0
+    speed = np.sqrt(2.0 - 1.0 / semi_major_axis)
+    for first in (speed, 1.02 * speed):
+        system = vv.Lagrangian(
+            lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2.0 + 1.0 / np.sqrt(q[0] ** 2 + q[1] ** 2),
+            ["x", "y"],
+            position=turned(1.0, 0.0),
+            velocity=turned(0.0, first),
+        )
+        found = system.boundary_value(np.pi * semi_major_axis**1.5, turned(-far, 0.0))
+        # det ∂x/∂v is 16 and more; some roundings of the flow's derivatives.
+        assert found.velocity == pytest.approx(turned(0.0, speed), rel=0, abs=1e-13)

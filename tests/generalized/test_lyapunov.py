@@ -67,11 +67,11 @@ def test_henon_and_heiles() -> None:
 
 
 WALLS = {
-    "exp": lambda x: np.exp(x),
+    "exp": np.exp,
     "Morse": lambda x: (1.0 - np.exp(-x)) ** 2,
     "Gauss": lambda x: -np.exp(-x * x),
     "tanh": lambda x: np.tanh(3.0 * x) ** 2,
-    "cosh": lambda x: np.cosh(x),
+    "cosh": np.cosh,
     "narrow": lambda x: x * x / 2.0 + 0.01 / np.cosh(40.0 * (x - 1.0)) ** 2,
 }
 
@@ -79,9 +79,7 @@ WALLS = {
 @pytest.mark.parametrize("wall", WALLS)
 def test_in_a_potential_with_functions_that_may_be_narrow(wall: str) -> None:
     """What steps are watched for reads the derivatives' whole state: Φ carries the rates along, and keeps areas."""
-    system = vv.Hamiltonian(
-        lambda q, p, t: p[0] ** 2 / 2.0 + WALLS[wall](q[0]), ["x"], position=[0.8], momentum=[0.3]
-    )
+    system = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2.0 + WALLS[wall](q[0]), ["x"], position=[0.8], momentum=[0.3])
     t = 2.5
     flow = system.flow_jacobian(t)
     out = system.run([0.0, t], rtol=1e-13)

@@ -30,6 +30,8 @@ _MOST_STEPS_OF_A_TRIAL = 20_000
 _HIT = 1e-13
 _NEAREST = 1e-10
 _MOST_NEWTON, _MOST_HALVINGS = 50, 12
+#: Times of a motion at which its extent is looked at.
+_LOOKS = 17
 #: Steps along a curve of solutions; lengths of them in sizes of a velocity, and what a corrector is to reach.
 _MOST_ALONG = 300
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.5, 1e-5
@@ -71,13 +73,23 @@ class _Shooting:
     def __init__(self, system: GeneralizedSystem, t: float, goal: NDArray[np.float64], rtol: float) -> None:
         self._system, self._t, self._goal, self._rtol = system, t, goal, rtol
         self._nearest, self._spread = np.inf, np.inf
-        # Relative to the places themselves: systems may be of any size.
-        self._scale = np.maximum(np.abs(goal), np.abs(system._start()[: len(goal)]))
+        # Relative to the places themselves, and to where the motion comes on the way: systems may be of any size.
+        self._scale = np.maximum(np.abs(goal), self._extent())
         # What cannot be run from the start is refused by its name; a velocity that is tried may be none of a motion.
         self._spread_of_free_motion = abs(t - system.t0) * _rates_by_second(system)
         self._present = self._reached(system._second, t, (ConvergenceError,))
         if self._present is not None:
             self._scale = np.maximum(self._scale, np.abs(self._present.place))
+
+    def _extent(self) -> NDArray[np.float64]:
+        """Give the farthest that each coordinate comes from zero in the present motion, or at the start of none."""
+        start = self._system._start()[: len(self._goal)]
+        try:
+            times = np.linspace(self._system.t0, self._t, _LOOKS)
+            out = self._system.run(times, rtol=self._rtol, max_steps=_MOST_STEPS_OF_A_TRIAL)
+        except (ConvergenceError, InvalidInput):
+            return np.abs(start)
+        return np.abs(np.vstack([start, out.position])).max(axis=0)
 
     def _reached(
         self,

@@ -24,8 +24,8 @@ __all__ = ["flow_jacobian", "legendre", "lyapunov_exponents", "refuse_kinks", "r
 
 #: The most steps of a run.
 MOST_STEPS = 100_000_000
-#: Where the least growth of neighbors is below this part of the most, it has lost half of its digits.
-_DROWNED = 1e-7
+#: Where the least growth of neighbors is below this part of the most, it has lost as many of its digits.
+_DROWNED = 1e-5
 
 
 def legendre(system: GeneralizedSystem) -> GeneralizedSystem:

@@ -7,7 +7,7 @@
 use super::Table;
 use super::changes::Changes;
 use super::pace::FADING;
-use super::step::{AGAIN, LEAST_SCALE, MOST_ITERATIONS, WILD, limit};
+use super::step::{AGAIN, LEAST_SCALE, MOST_ITERATIONS, UNFELT, WILD, limit};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -148,20 +148,31 @@ fn size_of<V: Vector8>(y: V, rates: &[Lanes], h: V, before: V) -> V {
     V::select(now.less(V::splat(f64::INFINITY)), now, V::zero()).max(before)
 }
 
+/// The velocities that move a coordinate by no more than its rounding, as of one trajectory.
+#[inline(always)]
+fn unfelt<V: Vector8>(form: Form, y: &[Lanes], i: usize, h: V) -> V {
+    match form {
+        Form::FirstOrder(_) => V::zero(),
+        Form::SecondOrder(_) => V::splat(UNFELT) * (V::load(y[i]) / h).abs(),
+    }
+}
+
 /// Sets what changes are measured by, in the lanes that run.
 #[inline(always)]
 fn set_scales<V: Vector8>(
     columns: &mut Columns,
     count: usize,
-    y: &[Lanes],
+    (form, y): (Form, &[Lanes]),
     (h, fading): (V, V),
     running: Bits,
 ) {
     let mut most = V::zero();
     let sizes = columns.tried.iter_mut().zip(&columns.sizes).zip(&columns.least);
-    for ((((size, known), least), rates), y) in sizes.zip(&columns.rates).zip(y) {
-        let known = (fading * V::load(*known)).max(V::load(*least));
-        let after = size_of(V::load(*y), &rates[..count], h, known);
+    for (i, ((((size, known), least), rates), now)) in
+        sizes.zip(&columns.rates).zip(form.measured(y)).enumerate()
+    {
+        let least = V::load(*least).max(unfelt(form, y, i, h));
+        let after = size_of(V::load(*now), &rates[..count], h, (fading * V::load(*known)).max(least));
         *size = V::select(running, after, V::load(*size)).store();
         most = after.max(most);
     }
@@ -272,7 +283,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
             }
         }
         if iteration == 1 {
-            set_scales(columns, count, form.measured(state.all().0), (h, V::load(*fading)), running);
+            set_scales(columns, count, (form, state.all().0), (h, V::load(*fading)), running);
         }
         let mut most = V::zero();
         for (&moved, &scale) in columns.moved.iter().zip(&columns.scales) {
@@ -314,13 +325,16 @@ fn weighted<V: Vector8>(weights: &[Lanes; 2], row: &Row, last: usize) -> V {
 #[inline(always)]
 fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> Bits {
     let Work { table, form, state, columns, h, fading, running, .. } = work;
-    let y = form.measured(state.all().0);
+    let y = state.all().0;
     let (h, fading) = (V::load(*h), V::load(*fading));
     let mut wild = Bits(0);
     let sizes = columns.tried.iter().zip(&columns.sizes).zip(&columns.least);
-    for ((((&tried, &known), &least), rates), &y) in sizes.zip(&columns.rates).zip(y) {
-        let known = (fading * V::load(known)).max(V::load(least));
-        let size = size_of(V::load(y), &rates[..table.columns()], h, known);
+    for (i, ((((&tried, &known), &least), rates), &now)) in
+        sizes.zip(&columns.rates).zip(form.measured(y)).enumerate()
+    {
+        let least = V::load(least).max(unfelt(*form, y, i, h));
+        let known = (fading * V::load(known)).max(least);
+        let size = size_of(V::load(now), &rates[..table.columns()], h, known);
         wild = wild.or(size.less(V::splat(WILD) * V::load(tried)));
     }
     wild.and(*running)

@@ -27,6 +27,8 @@ const LATELY: f64 = 0.8;
 const SHORTER: f64 = 0.85;
 /// … to here.
 const LONGER: f64 = 1.2;
+/// The most that a step is multiplied with, while steps grow at the start.
+const FAST: f64 = 4.0;
 /// Steps after which one is held, where energy is conserved.
 const STEPS_BEFORE_HOLDING: u64 = 10;
 /// The first step, as a fraction of the time in which numbers change by as much as they are.
@@ -70,6 +72,9 @@ pub(super) struct Pace {
     pub(super) longest_free: f64,
     /// δ of the steps before it that were kept, the older the less.
     lately: f64,
+    /// Whether steps have come to a length that the motion tells, and whether that has been held.
+    grown: bool,
+    held: bool,
     /// Whether steps are held.
     holding: bool,
 }
@@ -129,14 +134,19 @@ impl Pace {
             return h;
         }
         let factor = self.factor(target, table);
-        let fast = if self.kept < 4 { 4.0 } else { 1.5 };
+        let fast = if self.kept < 4 || !self.grown { FAST } else { 1.5 };
         let next = if (SHORTER..=LONGER).contains(&factor) {
             h
         } else {
             h * Real::min(Real::max(factor, 0.3), fast)
         };
-        self.holding = held && self.kept == STEPS_BEFORE_HOLDING;
         let longest = if self.felt < FREE { Real::min(longest, self.longest_free) } else { longest };
+        // A number that is next to nothing makes first steps that are nothing beside the motion, and none that is held.
+        self.grown |= factor <= LONGER || next.abs() > longest;
+        if self.grown && !self.held && self.kept >= STEPS_BEFORE_HOLDING {
+            self.held = true;
+            self.holding = held;
+        }
         if next.abs() > longest { longest.copysign(next) } else { next }
     }
 

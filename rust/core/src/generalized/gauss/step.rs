@@ -29,6 +29,10 @@ pub(super) const LEAST_SCALE: f64 = 1e-8;
 /// equations, are rounded by the largest of them, and what they give to what hardly moves beside it is noise.
 pub(super) const ROUNDED_SCALE: f64 = 1e-4;
 
+/// A way by no more than this part of a coordinate tells nothing of the force that it is by: polynomials that lead ahead make
+/// some thousand times as much of its rounding, and of that steps are to feel no more than a hundredth.
+pub(super) const UNFELT: f64 = 262_144.0 * f64::EPSILON;
+
 /// What the stages of a step hold.
 #[derive(Clone, Debug)]
 pub(super) struct Stages {
@@ -138,19 +142,31 @@ fn size<V: Vector8>(y: f64, rates: &Lanes, h: f64, before: f64) -> f64 {
     if now > before && now < f64::INFINITY { now } else { before }
 }
 
+/// The velocity that moves a coordinate of the second order by what its rounding makes of forces: where less is all there is,
+/// as beside an unstable equilibrium, forces are noise, and no step would be short enough for it.
+#[inline(always)]
+fn unfelt(form: Form, y: &[f64], i: usize, h: f64) -> f64 {
+    match form {
+        Form::FirstOrder(_) => 0.0,
+        Form::SecondOrder(_) => UNFELT * (y[i] / h).abs(),
+    }
+}
+
 /// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
 fn set_scales<V: Vector8>(
     stages: &mut Stages,
     (rates, outputs): (&[Lanes], &[u16]),
-    y: &[f64],
+    (form, y): (Form, &[f64]),
     h: f64,
     fading: f64,
 ) {
     let mut most = 0.0;
     let sizes = stages.tried.iter_mut().zip(&stages.sizes).zip(&stages.least);
-    for ((((tried, known), least), &output), y) in sizes.zip(outputs).zip(y) {
-        *tried = size::<V>(*y, &rates[usize::from(output)], h, Real::max(fading * *known, *least));
+    for (i, ((((tried, known), least), &output), now)) in sizes.zip(outputs).zip(form.measured(y)).enumerate()
+    {
+        let least = Real::max(*least, unfelt(form, y, i, h));
+        *tried = size::<V>(*now, &rates[usize::from(output)], h, Real::max(fading * *known, least));
         most = if *tried > most { *tried } else { most };
     }
     for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
@@ -204,7 +220,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
         }
         execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
         if iteration == 1 {
-            set_scales::<V>(stages, (registers, outputs), form.measured(y), work.h, *fading);
+            set_scales::<V>(stages, (registers, outputs), (*form, y), work.h, *fading);
         }
         let mut change = V::zero();
         let own = own_lanes(table.stages);
@@ -228,10 +244,13 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
 #[inline(always)]
 fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> bool {
     let Work { form, state, stages, h, fading, .. } = work;
-    let y = form.measured(state.all().0);
+    let y = state.all().0;
     let sizes = stages.tried.iter().zip(&stages.sizes).zip(&stages.least);
-    for ((((&tried, &known), &least), rates), &y) in sizes.zip(&stages.rates).zip(y) {
-        if size::<V>(y, rates, *h, Real::max(*fading * known, least)) < WILD * tried {
+    for (i, ((((&tried, &known), &least), rates), &now)) in
+        sizes.zip(&stages.rates).zip(form.measured(y)).enumerate()
+    {
+        let least = Real::max(least, unfelt(*form, y, i, *h));
+        if size::<V>(now, rates, *h, Real::max(*fading * known, least)) < WILD * tried {
             return true;
         }
     }
