@@ -120,7 +120,10 @@ def trial_of(prepared: _core._Scene, asked: dict[str, Any], of: str) -> Trial:
     judged = []
     for column, bodies in wanted.items():
         values = _of(columns, column, bodies)
-        scale = _size(prepared, values) if column == "position" else _energy_scale(prepared, float(values[0]))
+        if column == "position":
+            scale = _size(prepared["position"][0], columns[column][0])
+        else:
+            scale = _energy_scale(prepared, float(values[0]))
         judged.append(_Judged(column, bodies, scale or 1.0, values))
     trial = Trial(asked, fraction, tuple(judged), seconds, span / steps, "dop853", np.inf)
     for method in _REFERENCES:
@@ -160,11 +163,14 @@ def _of(columns: dict[str, Any], column: str, bodies: Any) -> Any:
     return columns[column][0] if bodies is None else columns[column][0][:, bodies]
 
 
-def _size(prepared: _core._Scene, positions: Any) -> float:
-    """How far from the center of the bodies they are at first, or come."""
-    start = prepared["position"][0]
-    center = start.mean(axis=0)
-    return float(max(np.abs(positions - center).max(), np.abs(start - center).max()))
+def _size(start: Any, positions: Any) -> float:
+    """How far from their center bodies are at most; of one alone, or of all in one place, how far they come.
+
+    From where the center is by then: a motion that all share makes no system larger.
+    """
+    places = np.concatenate([start[None], positions])
+    apart = float(np.abs(places - places.mean(axis=1, keepdims=True)).max())
+    return apart or float(np.abs(places - start).max())
 
 
 def _energy_scale(prepared: _core._Scene, start: float) -> float:

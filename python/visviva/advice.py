@@ -12,6 +12,7 @@ Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration* 2nd ed., IX.8
 from __future__ import annotations
 
 from dataclasses import dataclass
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from visviva._advice_trial import TIGHTEST, trial_of
@@ -240,12 +241,14 @@ def _option(trial: Trial, method: Method, accuracy: float, patience: float) -> O
     stride = 4
     held = None
     for k in range(0, len(sizes), stride):
+        begun = perf_counter()
         found = trial.of_method(method, **{name: sizes[k]})
         if found is not None and found[0] <= accuracy:
             held = k
             break
-        # Too long a step may be refused or fail; one that takes too long is no better when it is shorter.
-        if found is not None and found[2] > patience:
+        # Too long a step may be refused or fail, also after a while; of one that is shorter a trial takes longer still.
+        longer = 1.0 if method.adaptive else 2.0 ** (0.5 * stride)
+        if longer * (perf_counter() - begun) > patience:
             return None
     if held is None:
         return None

@@ -326,7 +326,7 @@ class Scene(Runnable[Trajectory], Framed):
             The end of the run, or its output times, as of ``run``, in the units of the scene.
         accuracy : float
             The error that may be made, from 5e-13: of the energy, relative to it; of positions, relative to the size of
-            the system.
+            the system, the farthest that a body comes from the middle of all, which may move.
         of : {"energy", "position"}, optional
             Of what. Massless bodies have no energy: beside it they are judged by their positions.
 

@@ -3,6 +3,8 @@
 Bounds: three times the accuracy that was asked for, which a trial of a part of the time estimates.
 """
 
+import time
+
 import numpy as np
 import pytest
 
@@ -135,3 +137,50 @@ def test_massless_bodies_are_judged_by_where_they_are(accuracy: float) -> None:
     alone = vv.Scene(vv.Particles([0.0], [[1.0, 0, 0]], [[0, 1.0, 0]]), vv.RotatingFrame([0, 0, 0.3]))
     assert alone.advise(10.0, accuracy=1e-9).options
     assert not vv.problems.figure_eight().scene.advise(6.0, accuracy=1e-6).judges_massless
+
+
+@pytest.mark.parametrize("boost", [0.0, 10.0, 1000.0])
+def test_a_motion_that_all_share_makes_no_system_larger(boost: float) -> None:
+    """Galileo: a binary and a third body about it, at rest or all on their way; positions beside their own extent."""
+    scene = vv.Scene(
+        vv.Particles(
+            [1.0, 0.5, 0.2],
+            [[0.4, 0.0, 0.0], [-0.8, 0.0, 0.0], [0.0, 9.0, 1.0]],
+            [[0.0, boost + 0.3, 0.0], [0.0, boost - 0.6, 0.0], [-0.38, boost, 0.0]],
+        ),
+        vv.Gravity(1.0),
+    )
+    times = np.linspace(0.0, 100.0, 41)
+    advice = scene.advise(100.0, accuracy=1e-6, of="position")
+    exact = scene.run(times, method="verner98", rtol=1e-13).position
+    size = np.abs(exact - exact.mean(axis=1, keepdims=True)).max()
+    for option in advice.options:
+        assert np.abs(scene.run(times, **option.how).position - exact).max() < 3e-6 * size, option
+
+
+def test_of_one_body_the_size_is_how_far_it_comes() -> None:
+    """A stone alone has no extent, and nor have two that fall together."""
+    drag = vv.QuadraticDrag(0.1)
+    for start in ([[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]] * 2):
+        many = len(start)
+        stones = vv.Particles([1.0] * many, start, [[30.0, 0.0, 0.0]] * many)
+        scene = vv.Scene(stones, vv.UniformField([0.0, 0.0, -9.8]), drag)
+        assert scene.advise(3.0, accuracy=1e-8, of="position").options
+
+
+def test_a_method_that_never_holds_is_given_up_soon() -> None:
+    """A planet about a binary: a run of milliseconds, of which explicit Euler would take half a minute in vain.
+
+    Ten seconds are ten times what it takes on a machine that has nothing else to do.
+    """
+    scene = vv.Scene(
+        vv.Particles(
+            [0.6, 0.4, 1e-3],
+            [[0.4, 0.0, 0.0], [-0.6, 0.0, 0.0], [0.0, 5.0, 0.0]],
+            [[0.0, 0.4, 0.0], [0.0, -0.6, 0.0], [-0.447, 0.0, 0.0]],
+        ),
+        vv.Gravity(1.0),
+    )
+    begun = time.perf_counter()
+    scene.advise(300.0, accuracy=1e-6, of="position")
+    assert time.perf_counter() - begun < 10.0
