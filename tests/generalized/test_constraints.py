@@ -249,3 +249,30 @@ def test_it_goes_on_and_pickles_with_constraints() -> None:
     assert np.abs(half.position[-1] - whole.position[0]).max() < 1e-14
     assert np.abs(half.final.run(4.0).position[-1] - whole.position[-1]).max() < 1e-14
     assert gaps(half.final.run(np.linspace(2.0, 4.0, 9)).position).max() <= 4
+
+
+def test_copies_are_put_on_constraints_of_their_own() -> None:
+    """Rods of three lengths from one start, on the first of them: off the others, refused unless projected."""
+    rod = vv.Lagrangian(
+        lambda q, v, t, l: (v[0] ** 2 + v[1] ** 2) / 2.0 - 9.81 * q[1],
+        ["x", "y"],
+        parameters={"l": 1.0},
+        position=[0.6, -0.8],
+        velocity=[0.8, 0.6],
+        constraints=[lambda q, v, t, l: q[0] ** 2 + q[1] ** 2 - l**2],
+    )
+    lengths = np.array([1.0, 2.0, 0.5])
+    with pytest.raises(vv.InvalidInput, match=r"copy 1: constraint 0 .* pass consistent='project'"):
+        rod.ensemble(parameters={"l": lengths}).run(1.0)
+    for threads in (1, 3):
+        many = rod.ensemble(parameters={"l": lengths}, consistent="project")
+        out = many.run(np.linspace(0.0, 1.0, 5), threads=threads)
+        far = np.hypot(out.position[..., 0], out.position[..., 1])
+        assert far == pytest.approx(np.broadcast_to(lengths[:, None], far.shape), rel=1e-15, abs=0)
+        for k, length in enumerate(lengths):
+            alone = rod.at(position=many[k].position, velocity=many[k].velocity, parameters={"l": length})
+            assert np.array_equal(alone.run(np.linspace(0.0, 1.0, 5)).position, out.position[k])
+            # Toward the pivot, and along the velocity that the rod allows.
+            assert many[k].position == pytest.approx(length * np.array([0.6, -0.8]), rel=1e-15, abs=0)
+    with pytest.raises(vv.InvalidInput, match="expected 'project' or None"):
+        rod.ensemble(parameters={"l": lengths}, consistent="yes")  # type: ignore[arg-type]

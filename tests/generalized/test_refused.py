@@ -332,3 +332,14 @@ def test_a_start_that_overflows_or_has_no_mass_says_so() -> None:
     for system in (pole, pole.hamiltonian()):
         with pytest.raises(vv.InvalidInput, match="a singularity of"):
             system.run(1.0)
+
+
+def test_a_velocity_beyond_the_domain_of_the_function() -> None:
+    """L = −√(1 − v²): faster than light there is no energy, though without a force the acceleration is 0."""
+    free = vv.Lagrangian(lambda q, v, t: -np.sqrt(1.0 - v[0] ** 2), ["x"], position=[0.0], velocity=[0.5])
+    assert free.run(1.0).position[-1, 0] == pytest.approx(0.5, rel=1e-15, abs=0)
+    fast = free.at(velocity=[1.5])
+    with pytest.raises(vv.InvalidInput, match="the energy is no number"):
+        fast.run(1.0)
+    with pytest.raises(vv.ConvergenceError, match="no motion through both places"):
+        free.boundary_value(1.0, [1.5])

@@ -89,7 +89,8 @@ class _Shooting:
             out = self._system.run(times, rtol=self._rtol, max_steps=_MOST_STEPS_OF_A_TRIAL)
         except (ConvergenceError, InvalidInput):
             return np.abs(start)
-        return np.abs(np.vstack([start, out.position])).max(axis=0)
+        farthest: NDArray[np.float64] = np.abs(np.vstack([start, out.position])).max(axis=0)
+        return farthest
 
     def _reached(
         self,
@@ -100,6 +101,7 @@ class _Shooting:
         system, n = self._system, len(self._goal)
         try:
             other = system._at(None, second)
+            other._check_start()
             state, jacobian = flow_jacobian(other, t, rtol=self._rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
         except may_fail:
             return None

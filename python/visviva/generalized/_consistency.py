@@ -6,7 +6,7 @@ it would change if the coordinates did by as much as they are: in any units.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._nodes import Expression
+    from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["check_on_constraints"]
+__all__ = ["check_on_constraints", "projected", "wants_projection"]
 
 #: Residuals above this part of their sizes, and corrections above this part of a number, are no round-off.
 _CONSISTENT = 1e-10
@@ -44,8 +45,25 @@ def check_on_constraints(system: Lagrangian, state: NDArray[np.float64]) -> None
             if not abs(residual) <= _CONSISTENT * size:
                 raise InvalidInput(
                     argument,
-                    f"{what} {index} is {residual:.3g} at the start and not 0; pass consistent='project' to Lagrangian",
+                    f"{what} {index} is {residual:.3g} at the start and not 0; pass consistent='project'",
                 )
+
+
+def wants_projection(consistent: Literal["project"] | None) -> bool:
+    """Whether a start is to be put on its constraints."""
+    if consistent is None:
+        return False
+    if not isinstance(consistent, str) or consistent != "project":
+        raise InvalidInput("consistent", f"expected 'project' or None, got {consistent!r}")
+    return True
+
+
+def projected(
+    system: GeneralizedSystem, state: NDArray[np.float64], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Give the nearest state on the constraints, with these values of the parameters."""
+    nearest: NDArray[np.float64] = system._model.projected(system.t0, state, values)[2]
+    return nearest
 
 
 def _sizes(system: Lagrangian, state: NDArray[np.float64]) -> tuple[list[float], list[float]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
+from visviva.generalized._consistency import projected, wants_projection
 from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, member_index
 from visviva.generalized._resolved import warn_if_unresolved
 from visviva.generalized._runs import RTOL
@@ -59,6 +60,7 @@ class GeneralizedEnsemble(Shown):
         position: ArrayLike | None = None,
         second: ArrayLike | None = None,
         parameters: Mapping[str, ArrayLike] | Mapping[sympy.Symbol, ArrayLike] | None = None,
+        consistent: Literal["project"] | None = None,
     ) -> None:
         from visviva.generalized._system import GeneralizedSystem
 
@@ -93,6 +95,9 @@ class GeneralizedEnsemble(Shown):
         self._parameters = np.tile(system._values, (members, 1))
         for name, values in own.items():
             self._parameters[:, list(system.parameters).index(name)] = values
+        if wants_projection(consistent) and system._constraints():
+            each = zip(self._states, self._parameters, strict=True)
+            self._states = np.array([projected(system, state, values) for state, values in each])
 
     def __repr__(self) -> str:
         return f"GeneralizedEnsemble({count(len(self), 'copy', 'copies')} of {self.system!r})"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._changes import legendre, routhian
-from visviva.generalized._consistency import check_on_constraints
+from visviva.generalized._consistency import check_on_constraints, projected, wants_projection
 from visviva.generalized._equations import EquationsOfMotion, euler_lagrange
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
@@ -123,10 +123,8 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
             self._prepare(source, values, (position, velocity, t0))
         except InvalidInput as error:
             raise _named(error, source.names) from None
-        if consistent is not None and (not isinstance(consistent, str) or consistent != "project"):
-            raise InvalidInput("consistent", f"expected 'project' or None, got {consistent!r}")
-        if consistent == "project" and self._constraints() and self.position is not None:
-            state = self._model.projected(self.t0, self._start(), self._values)[2]
+        if wants_projection(consistent) and self._constraints() and self.position is not None:
+            state = projected(self, self._start(), self._values)
             self._prepare(source, values, (state[: len(source.names)], state[len(source.names) :], t0), self._model)
 
     @property
@@ -306,6 +304,12 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         if self._constraints():
             check_on_constraints(self, state)
         if self._has_rates(state):
+            # Beyond its domain a function may still have numbers for rates, as −√(1 − v²) of a velocity above 1.
+            if isnan(self.energy):
+                raise InvalidInput(
+                    "velocity",
+                    "the energy is no number at the start: L is not defined for this velocity here; start where it is",
+                )
             return
         index = int(np.argmin(np.isfinite(self._rates(state))))
         refuse_a_start(self, state, f"the acceleration of {self.coordinates[index]!r} is no number")

@@ -5,7 +5,7 @@ The one idea: a model of the core, values of its parameters, and a state; anothe
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 
@@ -155,6 +155,7 @@ class States(Shown):
         velocity: ArrayLike | None = None,
         momentum: ArrayLike | None = None,
         parameters: Mapping[str, ArrayLike] | Mapping[sympy.Symbol, ArrayLike] | None = None,
+        consistent: Literal["project"] | None = None,
     ) -> GeneralizedEnsemble:
         """Many copies, from starts or with parameters of their own.
 
@@ -166,6 +167,8 @@ class States(Shown):
             The starts, with velocities or momenta as in `at`.
         parameters : dict, optional
             Values (B,) of some parameters.
+        consistent : {"project"}, optional
+            Puts starts that violate the constraints on them; they are refused otherwise.
 
         Returns
         -------
@@ -189,7 +192,7 @@ class States(Shown):
             own = self._conjugates(position, self._other(own), other, parameters)
         from visviva.generalized._ensemble import GeneralizedEnsemble
 
-        return GeneralizedEnsemble(as_system(self), position, own, parameters)
+        return GeneralizedEnsemble(as_system(self), position, own, parameters, consistent)
 
     def _other(self, own: ArrayLike | None) -> str:
         """Give the name of what the second half of a state is not, unless both are given."""
