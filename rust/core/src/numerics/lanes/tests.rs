@@ -87,7 +87,7 @@ proptest! {
             .into_iter()
             .zip(b)
             .flat_map(|(a, b)| {
-                let mixed = half(a) * 0xd251_1f53 ^ b >> 11 ^ 0x0123_4567_89ab_cdef;
+                let mixed = (half(a) * 0xd251_1f53) ^ (b >> 11) ^ 0x0123_4567_89ab_cdef;
                 [half(b) << 32 | half(mixed), half(mixed) << 32 | half(a)]
             })
             .collect();
