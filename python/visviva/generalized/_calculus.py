@@ -58,10 +58,18 @@ class Calculus:
 
     def with_derivatives(self, expressions: Sequence[Expression]) -> list[list[Expression]]:
         """Give each expression as the core simplifies it, then its derivatives by the state's numbers and the time."""
-        roots = [each._place for each in expressions]
-        found = self.adopted(*self._system._model.derivatives(self._nodes.all, roots))
+        nodes, roots = self._nodes.part([each._place for each in expressions])
+        found = self.adopted(*self._system._model.derivatives(nodes, roots))
         width = 2 * len(self._system.coordinates) + 2
         return [found[first : first + width] for first in range(0, len(found), width)]
+
+    def simplified(self, expressions: Sequence[Expression]) -> list[Expression]:
+        """Give each expression as the core simplifies it."""
+        nodes, roots = self._nodes.part([each._place for each in expressions])
+        found, places = self._system._model.derivatives(nodes, roots)
+        # Node by node the expressions come before what they have as derivatives.
+        own = places[:: 2 * len(self._system.coordinates) + 2]
+        return self.adopted(found[: max(own, default=-1) + 1], own)
 
     def is_zero(self, expression: Expression) -> bool:
         """Whether an expression that the core has simplified vanishes identically."""
@@ -72,9 +80,9 @@ class Calculus:
         self, expressions: Sequence[Expression], t: NDArray[np.float64], states: NDArray[np.float64], parameters: Any
     ) -> NDArray[np.float64]:
         """Give values (N, k) at times (N) and states (N, 2n)."""
-        roots = [each._place for each in expressions]
+        nodes, roots = self._nodes.part([each._place for each in expressions])
         states = np.ascontiguousarray(states)
-        return self._system._model.evaluate(self._nodes.all, roots, t, states, parameters[None, :])
+        return self._system._model.evaluate(nodes, roots, t, states, parameters[None, :])
 
     def to_sympy(self, expressions: Sequence[Expression]) -> list[Any]:
         """Give expressions as trees of SymPy."""

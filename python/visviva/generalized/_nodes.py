@@ -14,7 +14,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -84,6 +84,24 @@ class Nodes:
             place = self._places[key] = len(self.all)
             self.all.append((operation, list(arguments), value))
         return place
+
+    def reached(self, roots: Iterable[int]) -> list[int]:
+        """Give the numbers of all nodes that some are made of, arguments first."""
+        found: set[int] = set()
+        pending = list(roots)
+        while pending:
+            place = pending.pop()
+            if place not in found:
+                found.add(place)
+                pending.extend(self.all[place][1])
+        return sorted(found)
+
+    def part(self, roots: Sequence[int]) -> tuple[list[Node], list[int]]:
+        """Give a list of those alone, and the numbers of the roots in it."""
+        places = self.reached(roots)
+        at = {place: number for number, place in enumerate(places)}
+        part = [(self.all[place][0], [at[each] for each in self.all[place][1]], self.all[place][2]) for place in places]
+        return part, [at[root] for root in roots]
 
     def constant(self, value: float) -> int:
         """Give the number of a constant."""

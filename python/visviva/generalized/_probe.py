@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva.generalized._rounding import rounding_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -87,18 +89,24 @@ class Probe:
         with np.errstate(all="ignore"):
             values = c.values(terms, self._t, self._states, c._system._values)
             moved = c.values(terms, self._moved_t, self._moved, c._system._values)
+            lost = rounding_of(c, terms, self._t, self._states)
             sizes = np.abs(values).sum(axis=1)
             noise = np.abs(moved - values)
             usable = np.isfinite(sizes) & np.isfinite(noise).all(axis=1)
             known = int((usable & self._near).sum()) >= _FEWEST
             usable &= sizes > _SMALLEST
             values, sizes, noise, near = values[usable], sizes[usable], noise[usable], self._near[usable]
+            lost = lost[usable]
             sums = values.sum(axis=1)
             rounding = _NOISE * noise.sum(axis=1)
             counted = np.where(np.abs(sums) > VANISHES * sizes + rounding, np.abs(sums), 0.0) / sizes
             # What is only rounding is told as such, relative to what it may be.
             clear = rounding <= VANISHES * sizes
             counted = np.maximum(counted, np.where(clear, np.abs(sums) / sizes, 0.0))
+            # What may be nothing but lost digits, as beside what has left the range of numbers, tells nothing.
+            may_be_lost = np.abs(sums) <= lost.sum(axis=1) + VANISHES * sizes
+            counted = np.where(may_be_lost & (counted > VANISHES), 0.0, counted)
+            noise = np.maximum(noise, lost)
             seen = (np.abs(values) > _VISIBLE * sizes[:, None]) & (noise <= _KNOWN * np.abs(values))
         beside = float(counted[near].max(initial=0.0))
         residual = beside if beside > VANISHES else float(counted.max(initial=0.0))
@@ -157,7 +165,16 @@ def terms_of(c: Calculus, parts: list[Expression]) -> list[Expression]:
     nodes = c._nodes
     from visviva.generalized._nodes import Expression
 
+    # What occurs in many places is multiplied out once.
+    known: dict[int, list[int]] = {}
+
     def expand(place: int) -> list[int]:
+        if place not in known:
+            found = expanded(place)
+            known[place] = found if len(found) <= _MOST_TERMS else [place]
+        return known[place]
+
+    def expanded(place: int) -> list[int]:
         operation, arguments, _ = nodes.all[place]
         if operation == "sum":
             return [each for argument in arguments for each in expand(argument)]
@@ -178,5 +195,4 @@ def terms_of(c: Calculus, parts: list[Expression]) -> list[Expression]:
     unique = [Expression(nodes, place) for place in dict.fromkeys(found)]
     counts = [found.count(each._place) for each in unique]
     scaled = [each if count == 1 else each * float(count) for each, count in zip(unique, counts, strict=True)]
-    rows = c.with_derivatives(scaled)
-    return [row[0] for row in rows if not c.is_zero(row[0])]
+    return [each for each in c.simplified(scaled) if not c.is_zero(each)]
