@@ -229,3 +229,34 @@ def test_a_file_loads_without_sympy(tmp_path: Path) -> None:
     again = vv.load(path)
     assert isinstance(again, GeneralizedTrajectory)
     assert float(told) == again.final.run(2.0).position[-1, 0]
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_copies_run_on_from_where_they_ended(method: Any, threads: int, tmp_path: Any) -> None:
+    """Each with its own parameters, with the bits of a single run that runs on, and also from a file.
+
+    And as one long run, to what a step costs: 1e-10 of a radian.
+    """
+    start, lengths = np.array([[0.5], [1.0], [2.0]]), np.array([1.0, 2.0, 0.5])
+    many = vv.systems.pendulum(position=[0.1]).ensemble(position=start, parameters={"l": lengths})
+    first = many.run([0.0, 0.5, 1.5], method=method, threads=threads)
+    first.save(tmp_path / "copies.npz")
+    on = first.final.run([1.5, 4.0], method=method, threads=threads)
+    assert first.final.system.t0 == 1.5
+    again = vv.load(tmp_path / "copies.npz").final.run([1.5, 4.0], method=method, threads=threads)
+    assert np.array_equal(on.position, again.position)
+    whole = many.run([0.0, 4.0], method=method, threads=threads)
+    assert on.position[:, -1] == pytest.approx(whole.position[:, -1], rel=0, abs=1e-8 if method == "dop853" else 1e-10)
+    for k in range(3):
+        alone = many[k].run([0.0, 0.5, 1.5], method=method).final.run([1.5, 4.0], method=method)
+        assert np.array_equal(on.position[k], alone.position)
+        assert np.array_equal(on.velocity[k], alone.velocity)
+
+
+def test_copies_that_ended_at_times_of_their_own_run_on_one_by_one() -> None:
+    many = vv.systems.pendulum().ensemble(position=[[0.5], [2.0]])
+    out = many.run(3.0, events=[vv.events.coordinate("theta", terminal=True)])
+    with pytest.raises(vv.InvalidInput, match=r"copies \[0, 1\] failed or were stopped"):
+        _ = out.final
+    assert out[0].final.t0 != out[1].final.t0

@@ -167,6 +167,33 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         system, looked_for = self.ensemble.system, self._asked["looked_for"]
         return found_events(system, self._result, looked_for, self.ensemble._parameters)
 
+    @property
+    def final(self) -> GeneralizedEnsemble:
+        """The copies at the last time, ready to run on.
+
+        Raises
+        ------
+        InvalidInput
+            If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+        >>> len(out.final), out.final.system.t0
+        (2, 1.0)
+        """
+        if self.status.any():
+            failed = np.flatnonzero(self.status)[:8].tolist()
+            raise InvalidInput(
+                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
+            )
+        lasts = [self[member]._last for member in range(len(self))]
+        states, n = np.array([state for _, state in lasts]), len(self.ensemble.system.coordinates)
+        system = self.ensemble.system._at(None, None, t0=lasts[0][0])
+        own = dict(zip(system.parameters, self.ensemble._parameters.T, strict=True))
+        return type(self.ensemble)(system, states[:, :n], states[:, n:], own)
+
     def plot(
         self,
         column: Literal["position", "velocity", "momentum", "energy"] = "position",
