@@ -63,9 +63,8 @@ impl<V: Vector8> Least<V> {
     #[inline(always)]
     fn look(&mut self, [d, v, a]: [[V; 3]; 3], length2: V, here: Bits) {
         let r2 = squared(d).max(length2);
-        let over = |of: V| V::select(here.and(V::zero().less(of)), r2 / of, V::splat(LONG));
-        self.speeds = self.speeds.min(over(squared(v)));
-        self.pulls = self.pulls.min(over(squared(a)));
+        self.speeds = self.speeds.min(over(r2, squared(v), here));
+        self.pulls = self.pulls.min(over(r2, squared(a), here));
     }
 
     /// The longest step of each lane.
@@ -75,6 +74,12 @@ impl<V: Vector8> Least<V> {
         let by_pull = (V::splat(2.0 * PART) * self.pulls.sqrt()).sqrt();
         by_speed.min(by_pull)
     }
+}
+
+/// The quotient where there is one in the lanes of a mask. No closure, which would be compiled without the tier's instructions.
+#[inline(always)]
+fn over<V: Vector8>(distance2: V, of: V, here: Bits) -> V {
+    V::select(here.and(V::zero().less(of)), distance2 / of, V::splat(LONG))
 }
 
 #[inline(always)]

@@ -353,7 +353,8 @@ pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 
 /// large as what is looked for, and always to one side.
 #[inline(always)]
 fn short_of_one<S: Real>(q: [S; 4], rest: [S; 4]) -> S {
-    let squares = q.map(|part| part * part);
+    // `map` would be compiled without the tier's instructions.
+    let squares = [q[0] * q[0], q[1] * q[1], q[2] * q[2], q[3] * q[3]];
     let (first, first_lost) = two_sum(squares[0], squares[1]);
     let (last, last_lost) = two_sum(squares[2], squares[3]);
     let (sum, lost) = two_sum(first, last);
