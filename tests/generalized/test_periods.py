@@ -152,3 +152,12 @@ def test_what_has_no_period_beyond_quadratic_velocities_is_refused() -> None:
     assert rotating.period(turn=2 * np.pi) == pytest.approx(float(period), rel=1e-12, abs=0.0)
     with pytest.raises(vv.InvalidInput, match="energy does not repeat"):
         rotating.period(turn=3.0)
+
+
+def test_a_fast_relativistic_oscillator() -> None:
+    """L = −√(1 − v²) − x²/2 from x = 100: at nearly the speed of light but for its turns, of ten thousand steps each.
+
+    T = 4 ∫ E dx/√(E² − 1) with E = 1 + (A² − x²)/2, by quadrature to 15 digits.
+    """
+    fast = vv.Lagrangian(lambda q, v, t: -np.sqrt(1.0 - v[0] ** 2) - q[0] ** 2 / 2.0, ["x"], position=[100.0])
+    assert fast.period() == pytest.approx(400.040016188414, rel=1e-10, abs=0)

@@ -37,7 +37,7 @@ _OF_AN_OSCILLATION = "the period of an oscillation is period()"
 _SAME = 1e-6
 #: What a motion is followed for: so many doublings of the shortest time it tells at the start, and so many steps.
 _DOUBLINGS = 40
-_MOST_STEPS = 20_000
+_MOST_STEPS = 100_000
 #: Panels of a quadrature, at first, and how often each may be halved; by how much it may change then.
 _PANELS = 4
 _MOST_HALVINGS = 40
@@ -158,7 +158,8 @@ def _return_time(system: _Of, start: NDArray[np.float64], turn: float | None, fo
         try:
             times, states, sizes = _crossings(system, start, rates, far, forward * span)
         except ConvergenceError as error:
-            why = f" ({error})"
+            # Who asks for a period passes no steps.
+            why = f" ({error})".replace("; pass a larger max_steps", "")
             break
         same = (np.abs(states - start - far) <= _SAME * sizes).all(axis=1) & (np.abs(times) > 1e-3 * _SAME * span)
         if same.any():
