@@ -32,6 +32,8 @@ class OdeSolution(Shown):
     ----------
     ts : ndarray, shape (S + 1,)
         The nodes, in the units of the problem.
+    n_segments : int
+        The steps, S.
     t_min, t_max : float
         The ends of the span that it is good for; beyond them it is what the outermost steps say.
 
@@ -54,6 +56,19 @@ class OdeSolution(Shown):
         made_by(self, "visviva.solve_ivp(..., dense_output=True)", ts=(self.ts, np.ndarray))
         # The solution is evaluated with them.
         self.ts.setflags(write=False)
+
+    @property
+    def n_segments(self) -> int:
+        """The steps, each of which has its polynomial.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> solution = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0], dense_output=True).sol
+        >>> solution.n_segments == len(solution.ts) - 1
+        True
+        """
+        return len(self.ts) - 1
 
     @property
     def t_min(self) -> float:
@@ -114,7 +129,7 @@ class OdeSolution(Shown):
         return states[0] if times.ndim == 0 else states.T
 
     def __repr__(self) -> str:
-        return f"<OdeSolution of {len(self.ts) - 1} steps from t = {self.ts[0]} to {self.ts[-1]}>"
+        return f"<OdeSolution of {self.n_segments} steps from t = {self.ts[0]} to {self.ts[-1]}>"
 
 
 @known_keywords
