@@ -159,6 +159,25 @@ def test_the_sum_rule() -> None:
     assert s.total_cross_section(V.HardSphere(2.0), energy=1.0) == pytest.approx(4.0 * np.pi, rel=1e-15, abs=0)
 
 
+def test_a_formula_orbits_as_well_as_what_is_built_in() -> None:
+    """Beside an orbit G is a rest that has no digits in float64; at 0.2 of the depth it is met from both sides."""
+    formula = V.Custom(lambda r: 4.0 * (r**-12 - r**-6))
+    found, known = (s.transport_cross_section(potential, energy=0.2) for potential in (formula, LENNARD_JONES))
+    assert found == pytest.approx(known, rel=1e-10, abs=0.0)
+    angles = [0.3, 1.7]
+    found, known = (s.cross_section(potential, energy=0.2, angle=angles) for potential in (formula, LENNARD_JONES))
+    np.testing.assert_allclose(found, known, rtol=1e-9, atol=0.0)
+
+
+def test_the_energy_of_the_top_of_a_hill_is_one_like_others() -> None:
+    """Head-on nothing is to be told there, but that is of an area of nothing: Q(E) goes on through V(0) so smoothly that the
+    mean of both sides, 1e-9 away, has nine digits and more."""
+    hill = V.Custom(lambda r: 3.0 * np.exp(-r * r))
+    below, at_top, above = s.transport_cross_section(hill, energy=[3.0 * (1.0 - 1e-9), 3.0, 3.0 * (1.0 + 1e-9)])
+    assert at_top == pytest.approx(0.5 * (below + above), rel=1e-10, abs=0.0)
+    assert np.isfinite(s.transport_cross_section(hill, energy=np.nextafter(3.0, 0.0)))
+
+
 def test_collision_integrals_of_hard_spheres() -> None:
     for orders in ((1, 1), (2, 2), (1, 3)):
         sphere = s.collision_integral(V.HardSphere(2.0), temperature=[0.1, 7.0], orders=orders, diameter=2.0)

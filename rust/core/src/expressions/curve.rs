@@ -7,6 +7,7 @@ use super::assembler::compile;
 use super::code::{Code, word};
 use super::execute::{self, Part, Scalar, room};
 use super::graph::{Graph, Id, Node};
+use super::precise::Precise;
 use super::program::Output;
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
@@ -25,6 +26,8 @@ thread_local! {
 #[derive(Clone, Debug)]
 pub struct Curve {
     all: Code,
+    /// To about thirty digits: the value, the derivative, all three.
+    precise: [Precise; 3],
 }
 
 impl Curve {
@@ -43,8 +46,9 @@ impl Curve {
         let x = graph.variable(0);
         let slope = graph.gradient(root, &[x])[0];
         let second = graph.gradient(slope, &[x])[0];
-        let outputs = [root, slope, second].map(Output::Node);
-        Ok(Self { all: compile(&graph, (1, 0), &[], &outputs)? })
+        let roots = [root, slope, second];
+        let precise = [&roots[..1], &roots[1..2], &roots].map(|roots| Precise::new(&graph, roots));
+        Ok(Self { all: compile(&graph, (1, 0), &[], &roots.map(Output::Node))?, precise })
     }
 
     /// One that is no number anywhere.
@@ -60,15 +64,27 @@ impl Curve {
             outputs: vec![1; 3],
             operations: 1,
         };
-        Self { all }
+        Self { all, precise: Default::default() }
     }
 }
 
 /// Scalars of which a curve is a function.
-pub trait Argument: Sized {
+pub trait Argument: Copy {
     /// The value of a curve, its derivative and its second one.
     #[must_use]
     fn all_on(self, curve: &Curve) -> [Self; 3];
+    /// The first of them.
+    #[inline(always)]
+    #[must_use]
+    fn value_on(self, curve: &Curve) -> Self {
+        self.all_on(curve)[0]
+    }
+    /// The second.
+    #[inline(always)]
+    #[must_use]
+    fn slope_on(self, curve: &Curve) -> Self {
+        self.all_on(curve)[1]
+    }
 }
 
 /// Runs a code whose variable is the first register, and gives its results.
@@ -119,15 +135,31 @@ by_lanes! {
     Avx512: Self::load, |x: Self| x.store();
 }
 
-/// To the rounding of the curve itself; what the rounded argument leaves out moves along its tangent.
+/// Where a number on the way has no more digits, to the rounding of the curve itself; what the rounded argument leaves out
+/// moves along its tangent.
 impl Argument for DoubleDouble {
     fn all_on(self, curve: &Curve) -> [Self; 3] {
-        let [value, slope, second] = self.high().all_on(curve);
-        let rest = Self::from(self.low());
-        [
-            Self::from(value) + rest * Self::from(slope),
-            Self::from(slope) + rest * Self::from(second),
-            Self::from(second),
-        ]
+        told(&curve.precise[2], self).unwrap_or_else(|| along_tangents(curve, self))
     }
+    fn value_on(self, curve: &Curve) -> Self {
+        told(&curve.precise[0], self).map_or_else(|| along_tangents(curve, self)[0], |[value]| value)
+    }
+    fn slope_on(self, curve: &Curve) -> Self {
+        told(&curve.precise[1], self).map_or_else(|| along_tangents(curve, self)[1], |[slope]| slope)
+    }
+}
+
+fn told<const N: usize>(precise: &Precise, x: DoubleDouble) -> Option<[DoubleDouble; N]> {
+    let found = <[DoubleDouble; N]>::try_from(precise.at(0.0, &[x], &[])).ok()?;
+    found.iter().all(|number| number.is_finite()).then_some(found)
+}
+
+fn along_tangents(curve: &Curve, x: DoubleDouble) -> [DoubleDouble; 3] {
+    let [value, slope, second] = x.high().all_on(curve);
+    let rest = DoubleDouble::from(x.low());
+    [
+        DoubleDouble::from(value) + rest * DoubleDouble::from(slope),
+        DoubleDouble::from(slope) + rest * DoubleDouble::from(second),
+        DoubleDouble::from(second),
+    ]
 }

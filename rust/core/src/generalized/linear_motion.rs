@@ -36,15 +36,12 @@ pub struct LinearMotion {
 
 impl LinearMotion {
     /// That of a model, if its equations are linear with constant coefficients.
-    ///
-    /// # Errors
-    /// Expressions that are too large.
-    pub fn of(model: &Model) -> Result<Option<Self>> {
+    pub fn of(model: &Model) -> Option<Self> {
         let constrained = !model.source.holonomic.is_empty() || !model.source.nonholonomic.is_empty();
         // The state of variational equations has more than these numbers.
         let alone = model.numbers() == 2 * model.source.coordinates;
         if constrained || !alone || model.needs().time {
-            return Ok(None);
+            return None;
         }
         let masses = model.source.kind == Kind::Lagrangian;
         let rates = model.rates.iter().map(|rate| match rate {
@@ -54,43 +51,42 @@ impl LinearMotion {
         let Some(right) =
             (if masses { Some(model.right.clone()) } else { rates.collect::<Option<Vec<Id>>>() })
         else {
-            return Ok(None);
+            return None;
         };
         let mut graph = model.source.graph.clone();
         let varies =
             |graph: &Graph, ids: &[Id]| ids.iter().any(|&id| graph.dependence(id) > Dependence::Parameters);
         let mass: Vec<Id> = model.mass.iter().flatten().copied().collect();
         if varies(&graph, &mass) {
-            return Ok(None);
+            return None;
         }
         let one = graph.constant(1.0);
         for index in 0..model.numbers() as u32 {
             let number = graph.variable(index);
             let column = graph.tangent(&right, &HashMap::from([(number, one)]));
             if varies(&graph, &column) {
-                return Ok(None);
+                return None;
             }
         }
-        let (n, rows, inputs) =
-            (model.source.coordinates, right.len(), (model.numbers(), model.source.parameters));
-        let right = Precise::new(model.source.graph.clone(), right, inputs)?;
-        Ok(Some(Self { n, rows, masses, right, mass: Precise::new(graph, mass, inputs)? }))
+        let (n, rows) = (model.source.coordinates, right.len());
+        let right = Precise::new(&graph, &right);
+        Some(Self { n, rows, masses, right, mass: Precise::new(&graph, &mass) })
     }
 
     /// The flow with these parameters of the state and a 1 after it, forwards or backwards in time.
     fn flow(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
         let (n, rows, numbers) = (self.n, self.rows, 2 * self.n);
-        let mut state = vec![0.0; numbers];
+        let mut state = vec![DoubleDouble::zero(); numbers];
         let constants = self.right.at(t0, &state, parameters);
         let mass = self.mass.at(t0, &state, parameters);
         let mut right = vec![Vec::with_capacity(numbers + 1); rows];
         for index in 0..numbers {
-            state[index] = 1.0;
+            state[index] = DoubleDouble::one();
             let forces = self.right.at(t0, &state, parameters);
             for ((row, force), constant) in right.iter_mut().zip(forces).zip(&constants) {
                 row.push(force - *constant);
             }
-            state[index] = 0.0;
+            state[index] = DoubleDouble::zero();
         }
         right.iter_mut().zip(constants).for_each(|(row, constant)| row.push(constant));
         let mut matrix = vec![DoubleDouble::zero(); (numbers + 1) * (numbers + 1)];

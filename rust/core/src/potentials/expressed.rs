@@ -210,11 +210,11 @@ impl Formula for Expressed {
 
     #[inline(always)]
     fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
-        own[1] * (r * own[0]).all_on(&self.curve)[0]
+        own[1] * (r * own[0]).value_on(&self.curve)
     }
     #[inline(always)]
     fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
-        own[2] * (r * own[0]).all_on(&self.curve)[1]
+        own[2] * (r * own[0]).slope_on(&self.curve)
     }
     #[inline(always)]
     fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {

@@ -82,7 +82,7 @@ impl Described {
 
 impl GeneralizedModel {
     fn of(model: Model) -> Result<Self> {
-        let linear = LinearMotion::of(&model)?.map(Arc::new);
+        let linear = LinearMotion::of(&model).map(Arc::new);
         Ok(Self { structure: Structure::of(&model), linear, model: Arc::new(model), small: OnceLock::new() })
     }
 

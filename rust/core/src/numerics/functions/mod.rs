@@ -7,6 +7,7 @@
 mod hyperbolic;
 mod inverse;
 mod logarithm;
+pub mod precise;
 mod trigonometric;
 
 pub use hyperbolic::{sech_squared, sinh_cosh, tanh};

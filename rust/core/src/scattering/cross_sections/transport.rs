@@ -140,8 +140,10 @@ pub(super) fn transport_to(
     let mut pending = intervals(deflector, energy, &edges);
     let (mut sum, mut error) = (0.0, 0.0);
     let mut done: Vec<Part> = Vec::new();
+    let mut untold = None;
     for round in 0..ROUNDS {
-        let found = evaluate(deflector, energy, l, &pending, threads, ticker)?;
+        let (found, first_untold) = evaluate(deflector, energy, l, &pending, threads, ticker)?;
+        untold = untold.or(first_untold);
         let whole: f64 = done.iter().chain(&found).map(|part| part.value.abs()).sum();
         let last = round + 1 == ROUNDS || done.len() + pending.len() > MOST_INTERVALS;
         let mut next = Vec::new();
@@ -172,6 +174,9 @@ pub(super) fn transport_to(
         error += part.off + part.noise;
     }
     if error > 1e-6 * sum {
+        // What could not be told says why itself.
+        let places: Vec<f64> = untold.into_iter().collect();
+        let _ = deflector.deflect(&vec![energy; places.len()], &places, false, 1, ticker)?;
         let message = format!(
             "expected one at which a transport cross section can be known to 1e-6, got {}, where it is to {}",
             number(energy),
@@ -268,7 +273,10 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
     all
 }
 
-/// Each interval by both rules.
+/// 1 − cos^l ψ is no more.
+const ANY_ANGLE: f64 = 2.0;
+
+/// Each interval by both rules, and the first impact parameter whose angle cannot be told.
 fn evaluate(
     deflector: &Deflector,
     energy: f64,
@@ -276,7 +284,7 @@ fn evaluate(
     intervals: &[Interval],
     threads: usize,
     ticker: &mut Ticker<'_>,
-) -> Result<Vec<Part>> {
+) -> Result<(Vec<Part>, Option<f64>)> {
     let mut places = Vec::with_capacity(POINTS * intervals.len());
     for interval in intervals {
         for k in 0..POINTS {
@@ -284,10 +292,18 @@ fn evaluate(
         }
     }
     let b: Vec<f64> = places.iter().map(|place| place.b).collect();
-    let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
+    let found = deflector.deflect_what_can_be_told(&vec![energy; b.len()], &b, threads, ticker)?;
     let (mut values, mut noise) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
+    let mut untold = None;
     for (Place { b, rest, weight }, deflection) in places.iter().zip(&found) {
         let captured = deflection.status == Status::Captured;
+        if deflection.error == f64::INFINITY {
+            // Any angle: on the flat top of a barrier it matters to nothing.
+            values.push(0.0);
+            noise.push(ANY_ANGLE * b * weight);
+            untold = untold.or(Some(*b));
+            continue;
+        }
         // Near the rim of a well that falls as a root of what is left: by less than b is rounded it is not the same.
         let missing = if deflection.derivative.is_finite() { deflection.derivative * rest } else { 0.0 };
         let turned = if captured { 0.0 } else { less_than_one(deflection.angle + missing, l) };
@@ -299,7 +315,8 @@ fn evaluate(
         let [value, off] = both_rules(interval.ends, values);
         Part { value, off, noise: both_rules(interval.ends, noise)[0] }
     };
-    Ok(intervals.iter().zip(values.chunks(POINTS)).zip(noise.chunks(POINTS)).map(rules).collect())
+    let parts = intervals.iter().zip(values.chunks(POINTS)).zip(noise.chunks(POINTS)).map(rules).collect();
+    Ok((parts, untold))
 }
 
 /// The integral and how far it may be off.

@@ -93,6 +93,9 @@ impl Deflection {
             status: Status::Captured,
         }
     }
+    fn forget_angle(&mut self) {
+        (self.angle, self.complement, self.error) = (f64::NAN, f64::NAN, f64::INFINITY);
+    }
 }
 
 /// An impact parameter at which the deflection function is not smooth.
@@ -204,7 +207,21 @@ impl Deflector {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Deflection>> {
-        self.collected(energy, b, (all, |found| *found), threads, ticker)
+        self.collected(energy, b, (all, true), |found| *found, threads, ticker)
+    }
+    /// As [`deflect`](Self::deflect) without derivatives and delays, but what cannot be told, as what comes exactly onto the
+    /// flat top of a barrier, is no number whose error is infinite.
+    ///
+    /// # Errors
+    /// As [`deflect`](Self::deflect), but for a potential that changes too fast.
+    pub(in crate::scattering) fn deflect_what_can_be_told(
+        &self,
+        energy: &[f64],
+        b: &[f64],
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<Deflection>> {
+        self.collected(energy, b, (false, false), |found| *found, threads, ticker)
     }
     /// Their angles; NaN if captured.
     ///
@@ -217,14 +234,15 @@ impl Deflector {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<f64>> {
-        self.collected(energy, b, (false, |found| found.angle), threads, ticker)
+        self.collected(energy, b, (false, true), |found| found.angle, threads, ticker)
     }
 
     fn collected<T: Send>(
         &self,
         energy: &[f64],
         b: &[f64],
-        (all, take): (bool, fn(&Deflection) -> T),
+        (all, strict): (bool, bool),
+        take: fn(&Deflection) -> T,
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<T>> {
@@ -232,7 +250,7 @@ impl Deflector {
         let chunks = pairs.div_ceil(CHUNK);
         let parts = for_chunks(threads, chunks, ticker, |chunk, ticker| {
             let range = chunk * CHUNK..pairs.min((chunk + 1) * CHUNK);
-            let found = self.chunk(&energy[range.clone()], &b[range.clone()], all, ticker)?;
+            let found = self.chunk(&energy[range.clone()], &b[range.clone()], (all, strict), ticker)?;
             ticker.advance(range.len() as u64);
             Ok(found.iter().map(take).collect::<Vec<T>>())
         })?;
@@ -245,7 +263,7 @@ impl Deflector {
         &self,
         energy: &[f64],
         b: &[f64],
-        all: bool,
+        (all, strict): (bool, bool),
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Deflection>> {
         let known = |closed: Closed| -> Vec<Deflection> {
@@ -254,7 +272,7 @@ impl Deflector {
         let (Some(profile), false) = (&self.profile, self.closed.is_some() && !all) else {
             return Ok(self.closed.map(known).unwrap_or_default());
         };
-        let mut found = Quadrature { profile, tolerance: self.tolerance, refined: self.refined, all }
+        let mut found = Quadrature { profile, tolerance: self.tolerance, refined: self.refined, all, strict }
             .deflections(energy, b, ticker)?;
         if let Some(closed) = self.closed {
             for (found, known) in found.iter_mut().zip(known(closed)) {

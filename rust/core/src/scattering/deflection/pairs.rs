@@ -31,6 +31,8 @@ pub(super) struct Quadrature<'a> {
     /// Whether angles beside a barrier are as certain as E and b.
     pub(super) refined: bool,
     pub(super) all: bool,
+    /// Whether what cannot be told is refused; else it is no number.
+    pub(super) strict: bool,
 }
 
 /// What else there is to know of pairs that turn.
@@ -68,7 +70,7 @@ impl Quadrature<'_> {
         }
         for (place, found) in found.iter_mut().enumerate() {
             let (e, b) = (profile.take_energy(energy[place]), profile.take_length(b[place]));
-            if b <= self.as_head_on(e).0 && found.status != Status::Captured {
+            if b <= self.as_head_on(e).0 && found.status != Status::Captured && found.error.is_finite() {
                 self.head_on(e, b, found);
             }
             found.closest_approach = profile.give_length(found.closest_approach);
@@ -204,7 +206,11 @@ impl Quadrature<'_> {
                 let found = &mut found[usize::from(turning.places[at])];
                 let impact_parameter = as_numbers(&turned.b)[at];
                 self.finish((turning, at, impact_parameter), &pack, &work.sums, lane, found);
-                profile.check_resolved(pack.energy.0[lane], self.tolerance, found)?;
+                match profile.check_resolved(pack.energy.0[lane], self.tolerance, found) {
+                    Err(error) if self.strict => return Err(error),
+                    Err(_) => found.forget_angle(),
+                    Ok(()) => {}
+                }
             }
         }
         Ok(())

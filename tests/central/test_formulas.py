@@ -1,0 +1,81 @@
+"""Motion in the potential of a formula: as exact as in a potential that is built in, at circles and beside them, too.
+
+What decides there is the difference of an energy and of two near it, which has no digits in float64: formulas are evaluated
+to thirty digits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import visviva as vv
+from visviva.potentials import Coulomb, Custom, LennardJones, PowerLaw, Yukawa
+
+KEPLER = Custom(lambda r: -1.0 / r)
+# The period follows from the energy, whose rounding it shares, by 3/2, and is rounded itself.
+ROUNDING = 1e-15
+
+
+@pytest.mark.parametrize("radius", np.geomspace(0.01, 100.0, 12))
+def test_circles(radius: float) -> None:
+    orbit = vv.orbits.central_orbit(KEPLER, position=[radius, 0.0, 0.0], velocity=[0.0, radius**-0.5, 0.0])
+    assert orbit.radial_period == pytest.approx(2.0 * np.pi * radius**1.5, rel=1e-13, abs=0.0)
+
+
+def test_eccentricities_from_a_thousandth() -> None:
+    """Of energy −1/2 all periods are 2π, and no ellipse precesses."""
+    eccentricity = np.geomspace(1e-3, 0.3, 300)
+    momentum = np.sqrt((1.0 - eccentricity) * (1.0 + eccentricity))
+    found = vv.orbits.radial_motion(KEPLER, energy=-0.5, angular_momentum=momentum)
+    assert set(found.kind) == {"bound"}
+    np.testing.assert_allclose(found.radial_period, 2.0 * np.pi, rtol=ROUNDING, atol=0.0)
+    np.testing.assert_allclose(found.apsidal_angle, np.pi, rtol=ROUNDING, atol=0.0)
+    # 1 − e is what is left of l², rounded by half a unit: by 1e-16/e.
+    np.testing.assert_allclose(found.r_min, 1.0 - eccentricity, rtol=3e-13, atol=0.0)
+
+
+@pytest.mark.parametrize(
+    ("formula", "built_in", "energy", "momentum"),
+    [
+        (Custom(lambda r: 4.0 * (r**-12 - r**-6)), LennardJones(1.0, 1.0), -0.9999, 0.01),
+        (Custom(lambda r: -np.exp(-r / 5.0) / r), Yukawa(-1.0, length=5.0), -0.3258, 0.95),
+        (Custom(lambda r: -0.3 * r**-0.7), PowerLaw(-0.3, 0.7), -0.17, 0.4),
+        ([Coulomb(-1.0), Custom(lambda r: -0.05 / r**2)], [Coulomb(-1.0), PowerLaw(-0.05, 2.0)], -0.5549, 1.0),
+        ([Coulomb(-1.0), Custom(lambda r: 1e-3 / r**3)], [Coulomb(-1.0), PowerLaw(1e-3, 3.0)], -0.498, 1.0),
+    ],
+)
+def test_formulas_are_as_good_as_what_is_built_in(
+    formula: vv.potentials.Potential | list[vv.potentials.Potential],
+    built_in: vv.potentials.Potential | list[vv.potentials.Potential],
+    energy: float,
+    momentum: float,
+) -> None:
+    found, known = (
+        vv.orbits.radial_motion(potential, energy=energy, angular_momentum=momentum)
+        for potential in (formula, built_in)
+    )
+    assert found.kind == known.kind == "bound"
+    # Constants of the formulas are rounded elsewhere: by a unit of the energy's last place, which near a circle is more of
+    # the little that is left of it.
+    assert found.radial_period == pytest.approx(known.radial_period, rel=1e-13, abs=0.0)
+    assert found.apsidal_angle == pytest.approx(known.apsidal_angle, rel=1e-13, abs=0.0)
+    assert found.r_max - found.r_min == pytest.approx(known.r_max - known.r_min, rel=1e-10, abs=0.0)
+
+
+@pytest.mark.parametrize("function", ["sin", "cos", "tanh", "sinh", "arctan", "tan", "arcsinh", "sqrt"])
+def test_near_circles_of_any_function(function: str) -> None:
+    """Small swings about a circle have the period 2π/ω, ω² = V″ + 3l²/r⁴ of m = 1, but for a part of their square."""
+    well = Custom(lambda r: getattr(np, function)(0.2 * r) + 0.5 * r * r)
+    radius = 1.3
+    force, h = float(well.force(radius)), 1e-3
+    momentum = np.sqrt(-force * radius**3)
+    bend = (well.force(radius - h) - well.force(radius + h)) / (2.0 * h)
+    frequency = np.sqrt(float(bend) + 3.0 * momentum**2 / radius**4)
+    bottom = float(well.value(radius)) + 0.5 * momentum**2 / radius**2
+    size = 1e-5
+    found = vv.orbits.radial_motion(well, energy=bottom + 0.5 * (frequency * size) ** 2, angular_momentum=momentum)
+    # The difference quotient is good to h², and the amplitude, of an energy rounded by 2e-16, to 2e-6 of itself.
+    assert found.radial_period == pytest.approx(2.0 * np.pi / frequency, rel=1e-6, abs=0.0)
+    assert found.r_max - found.r_min == pytest.approx(2.0 * size, rel=1e-4, abs=0.0)
+    assert found.period_error < 1e-12
