@@ -276,3 +276,97 @@ def test_copies_are_put_on_constraints_of_their_own() -> None:
             assert many[k].position == pytest.approx(length * np.array([0.6, -0.8]), rel=1e-15, abs=0)
     with pytest.raises(vv.InvalidInput, match="expected 'project' or None"):
         rod.ensemble(parameters={"l": lengths}, consistent="yes")  # type: ignore[arg-type]
+
+
+def rod(**further: Any) -> vv.Lagrangian:
+    """A mass on a rod of length l, whose pivot moves as 0.1 sin(w t) along x."""
+    return vv.Lagrangian(
+        lambda q, v, t, l, w: (v[0] ** 2 + v[1] ** 2) / 2.0 - 9.81 * q[1],
+        ["x", "y"],
+        parameters={"l": 1.0, "w": 2.0},
+        constraints=[lambda q, v, t, l, w: ((q[0] - 0.1 * np.sin(w * t)) ** 2 + q[1] ** 2 - l**2) / 2.0],
+        **further,
+    )
+
+
+def test_a_system_that_projects_its_start_projects_those_of_others() -> None:
+    """Lengths, frequencies and starts of one's own: on the constraints to the last bits, as `at` and a system do it."""
+    start = {"position": [0.6, -0.8], "velocity": [0.9, 0.5]}
+    one = rod(consistent="project", **start)
+    lengths, frequencies = np.array([1.0, 2.0, 0.5]), np.array([0.0, 3.0, 1.0])
+    own = {"l": lengths, "w": frequencies}
+    times = np.linspace(0.0, 1.0, 5)
+    for threads in (1, 3):
+        many = one.ensemble(parameters=own)
+        out = many.run(times, threads=threads)
+        pivot = 0.1 * np.sin(frequencies[:, None] * times)
+        far = np.hypot(out.position[..., 0] - pivot, out.position[..., 1])
+        assert far == pytest.approx(np.broadcast_to(lengths[:, None], far.shape), rel=4 * EPSILON, abs=0)
+        for k in range(3):
+            values = {"l": lengths[k], "w": frequencies[k]}
+            for alone in (one.at(parameters=values), rod(consistent="project").at(parameters=values, **start)):
+                assert alone.position == pytest.approx(many[k].position, rel=2 * EPSILON, abs=0)
+                # The pivot moves with 0.1 w at the start: so does the rod along itself.
+                radial = (alone.velocity - [0.1 * frequencies[k], 0.0]) @ alone.position
+                assert abs(radial) <= 4 * EPSILON * np.abs(alone.velocity).max() * lengths[k]
+            assert np.array_equal(many[k].run(times).position, out.position[k])
+    starts = one.ensemble(position=[[3.0, 4.0], [0.0, -0.1]])
+    assert starts[0].position == pytest.approx([0.6, 0.8], rel=2 * EPSILON, abs=0)
+    assert starts[1].position == pytest.approx([0.0, -1.0], rel=2 * EPSILON, abs=0)
+    # Without it they are refused, as before; and where nothing is near there is nothing to put them on.
+    with pytest.raises(vv.InvalidInput, match=r"copy 1: constraint 0 is .* pass consistent='project'"):
+        rod(position=[0.6, -0.8], velocity=[0.2, 0.0]).ensemble(parameters={"l": [1.0, 2.0]}).run(1.0)
+    with pytest.raises(vv.InvalidInput, match="copy 1: constraint 0 has no gradient"):
+        one.ensemble(position=[[1.0, 0.0], [0.0, 0.0]])
+    square = vv.Lagrangian(
+        lambda q, v, t, c: (v[0] ** 2 + v[1] ** 2) / 2.0,
+        ["x", "y"],
+        parameters={"c": 1.0},
+        position=[1.0, 0.0],
+        constraints=[lambda q, v, t, c: q[0] ** 2 + q[1] ** 2 - c],
+        consistent="project",
+    )
+    with pytest.raises(vv.ConvergenceError, match=r"copy 1: the constraints .* cannot be met"):
+        square.ensemble(parameters={"c": [1.0, -1.0]})
+    with pytest.raises(vv.InvalidInput, match=r"copy 1: constraint 0 is .* start nearer to where all are 0"):
+        square.ensemble(position=[[0.7, 0.0], [0.7, 0.0]], parameters={"c": [1.0, -1.0]}).run(1.0)
+
+
+def test_that_starts_are_projected_is_kept(tmp_path: Any) -> None:
+    """By pickle, and by files of runs and ensembles."""
+    one = rod(consistent="project", position=[0.6, -0.8])
+    wanted = one.at(parameters={"l": 2.0}).position
+    assert wanted == pytest.approx([1.2, -1.6], rel=2 * EPSILON, abs=0)
+    assert np.array_equal(pickle.loads(pickle.dumps(one)).at(parameters={"l": 2.0}).position, wanted)
+    one.run(1.0).save(tmp_path / "one.npz")
+    one.ensemble(parameters={"l": [1.0, 2.0]}).run(1.0).save(tmp_path / "many.npz")
+    again: Any = vv.load(tmp_path / "one.npz")
+    copies: Any = vv.load(tmp_path / "many.npz")
+    for system in (again.system, copies.ensemble.system):
+        assert np.array_equal(system.at(parameters={"l": 2.0}).position, wanted)
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "dop853"}, {"method": "rattle8", "dt": 0.015625}])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_copies_with_constraints_run_on(how: dict[str, Any], threads: int, tmp_path: Any) -> None:
+    """With lengths and moving pivots of their own: with the bits of one that runs on alone, which nothing moves again.
+
+    And as in one run: 1e-11 is what the tolerance of 1e-12, or a hundred steps of order 8, leave in 4 time units.
+    """
+    own = {"l": [1.0, 2.0, 0.5], "w": [0.0, 3.0, 1.0]}
+    many = rod(consistent="project", position=[0.6, -0.8], velocity=[0.9, 0.5]).ensemble(parameters=own)
+    first = many.run([0.5, 1.5], threads=threads, **how)
+    on = first.final.run([1.5, 4.0], threads=threads, **how)
+    whole = many.run(4.0, threads=threads, **how)
+    assert on.position[:, -1] == pytest.approx(whole.position[:, -1], rel=0, abs=1e-11)
+    first.save(tmp_path / "copies.npz")
+    again: Any = vv.load(tmp_path / "copies.npz")
+    assert np.array_equal(again.final.run([1.5, 4.0], threads=threads, **how).position, on.position)
+    for k in range(3):
+        alone = many[k].run([0.5, 1.5], **how).final.run([1.5, 4.0], **how)
+        assert np.array_equal(on.position[k], alone.position)
+        assert np.array_equal(on.velocity[k], alone.velocity)
+        assert np.array_equal(on.reactions[k], alone.reactions)
+    # The start of the system is one of these, too: that of the first.
+    assert first.final.system.t0 == 1.5
+    assert np.array_equal(first.final.system.position, first.position[0, -1])

@@ -161,3 +161,25 @@ def test_a_fast_relativistic_oscillator() -> None:
     """
     fast = vv.Lagrangian(lambda q, v, t: -np.sqrt(1.0 - v[0] ** 2) - q[0] ** 2 / 2.0, ["x"], position=[100.0])
     assert fast.period() == pytest.approx(400.040016188414, rel=1e-10, abs=0)
+
+
+def test_a_period_of_too_many_steps_says_what_tells_it() -> None:
+    """From x = 300 the turns take 2e5 steps; `period` has no argument for them, and what it names instead does tell it.
+
+    T as above. At nearly the speed of light an ε of v is γ² ε of 1 − v², with γ = 4.5e4; the momentum of H loses
+    nothing, and its 1e3 steps add up to 1e-12.
+    """
+    wanted, start = 1200.013334095816, [300.0]
+    fast = vv.Lagrangian(lambda q, v, t: -np.sqrt(1.0 - v[0] ** 2) - q[0] ** 2 / 2.0, ["x"], position=start)
+    for asked in (fast.period, fast.action_variable):
+        with pytest.raises(vv.InvalidInput, match="in 100000 steps, until") as caught:
+            asked()
+        message = str(caught.value)
+        assert "max_steps" not in message
+        assert "run(t, events=[vv.events.coordinate('x', place, direction=1)])" in message
+        assert "the same motion takes far fewer as a Hamiltonian" in message
+    passing = vv.events.coordinate("x", 0.0, direction=1)
+    times = fast.run(2200.0, events=[passing]).events.t
+    assert times[1] - times[0] == pytest.approx(wanted, rel=4.5e4**2 * EPSILON, abs=0)
+    slow = vv.Hamiltonian(lambda q, p, t: np.sqrt(1.0 + p[0] ** 2) + q[0] ** 2 / 2.0, ["x"], position=start)
+    assert slow.period() == pytest.approx(wanted, rel=1e-12, abs=0)

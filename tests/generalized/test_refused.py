@@ -339,7 +339,36 @@ def test_a_velocity_beyond_the_domain_of_the_function() -> None:
     free = vv.Lagrangian(lambda q, v, t: -np.sqrt(1.0 - v[0] ** 2), ["x"], position=[0.0], velocity=[0.5])
     assert free.run(1.0).position[-1, 0] == pytest.approx(0.5, rel=1e-15, abs=0)
     fast = free.at(velocity=[1.5])
-    with pytest.raises(vv.InvalidInput, match="the energy is no number"):
+    told = "the momentum of 'x' and the energy are no numbers at the start: L is not defined there"
+    with pytest.raises(vv.InvalidInput, match=told) as caught:
         fast.run(1.0)
+    assert caught.value.argument == "velocity"
+    for asked in (fast.flow_jacobian, fast.lyapunov_exponents, lambda _: fast.period()):
+        with pytest.raises(vv.InvalidInput, match=told):
+            asked(1.0)
     with pytest.raises(vv.ConvergenceError, match="no motion through both places"):
         free.boundary_value(1.0, [1.5])
+    with pytest.raises(vv.InvalidInput, match=told):
+        fast.boundary_value(1.0, [0.5])
+    # Of light itself the energy is infinite.
+    with pytest.raises(vv.InvalidInput, match="the momentum of 'x' and the energy are infinite at the start: L is not"):
+        free.at(velocity=[1.0]).run(1.0)
+    for threads in (1, 3):
+        with pytest.raises(vv.InvalidInput, match=f"copy 2: {told}"):
+            free.ensemble(velocity=[[0.5], [-0.5], [1.5], [2.0]]).run(1.0, threads=threads)
+
+
+def test_a_place_beyond_the_domain_of_the_function() -> None:
+    """log(q) where q < 0: no energy, though 1/q is a number; at q = 0 no force, as the status of a copy tells."""
+    log = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2.0 - np.log(q[0]), ["x"], position=[-1.0])
+    for system, function in ((log, "L"), (log.hamiltonian(), "H")):
+        told = f"the energy is no number at the start: {function} is not defined there"
+        with pytest.raises(vv.InvalidInput, match=told) as caught:
+            system.run(0.5)
+        assert caught.value.argument == "position"
+        with pytest.raises(vv.InvalidInput, match=told):
+            system.boundary_value(0.5, [-1.5])
+        with pytest.raises(vv.InvalidInput, match=f"copy 1: {told}"):
+            system.ensemble(position=[[1.0], [-1.0]]).run(0.5)
+        out = system.ensemble(position=[[1.0], [0.0]]).run(0.5)
+        assert out.status.tolist() == [vv.Status.OK, vv.Status.STEP_FAILURE]

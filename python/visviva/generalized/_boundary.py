@@ -101,7 +101,6 @@ class _Shooting:
         system, n = self._system, len(self._goal)
         try:
             other = system._at(None, second)
-            other._check_start()
             state, jacobian = flow_jacobian(other, t, rtol=self._rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
         except may_fail:
             return None

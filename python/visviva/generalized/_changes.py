@@ -132,6 +132,7 @@ def flow_jacobian(
     """Give the state at ``t``, and its derivatives with respect to the state at the start."""
     n = 2 * len(system.coordinates)
     refuse_kinks(system)
+    system._check_start()
     asked, _ = system._asked(t, method, rtol, None, None)
     asked["max_steps"] = most_steps
     start = np.concatenate([system._start(), np.eye(n).ravel()])
@@ -155,6 +156,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     """Give all exponents, by the variational equations and orthonormal frames."""
     n = 2 * len(system.coordinates)
     refuse_kinks(system)
+    system._check_start()
     model = system._model.variational()
     parts = max(1, round(abs(t - system.t0) / interval))
     times = np.linspace(system.t0, t, parts + 1)

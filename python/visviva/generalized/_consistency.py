@@ -43,10 +43,9 @@ def check_on_constraints(system: Lagrangian, state: NDArray[np.float64]) -> None
         sizes = _sizes(system, state) if sizes is None else sizes
         for index, (residual, size) in enumerate(zip(residuals, sizes[half], strict=True)):
             if not abs(residual) <= _CONSISTENT * size:
-                raise InvalidInput(
-                    argument,
-                    f"{what} {index} is {residual:.3g} at the start and not 0; pass consistent='project'",
-                )
+                # Projected, it came to none: Newton's method is for starts near the constraints.
+                instead = "start nearer to where all are 0" if system._projects else "pass consistent='project'"
+                raise InvalidInput(argument, f"{what} {index} is {residual:.3g} at the start and not 0; {instead}")
 
 
 def wants_projection(consistent: Literal["project"] | None) -> bool:

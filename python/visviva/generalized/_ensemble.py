@@ -12,7 +12,7 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
-from visviva.errors import Interrupted, InvalidInput
+from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._consistency import projected, wants_projection
 from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, member_index
 from visviva.generalized._resolved import warn_if_unresolved
@@ -96,8 +96,11 @@ class GeneralizedEnsemble(Shown):
         for name, values in own.items():
             self._parameters[:, list(system.parameters).index(name)] = values
         if wants_projection(consistent) and system._constraints():
-            each = zip(self._states, self._parameters, strict=True)
-            self._states = np.array([projected(system, state, values) for state, values in each])
+            for member, values in enumerate(self._parameters):
+                try:
+                    self._states[member] = projected(system, self._states[member], values)
+                except (InvalidInput, ConvergenceError) as error:
+                    raise _of_copy(member, error) from None
 
     def __repr__(self) -> str:
         return f"GeneralizedEnsemble({count(len(self), 'copy', 'copies')} of {self.system!r})"
@@ -122,6 +125,18 @@ class GeneralizedEnsemble(Shown):
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
+
+    def _beyond_domain(self) -> list[int]:
+        """Give copies with numbers for rates at the start, but none for the energy or a momentum: no status tells."""
+        model, n = self.system._model, len(self.system.coordinates)
+        t0 = np.full(len(self), self.system.t0)
+        numbers = np.isfinite(model.columns(t0, self._states, self._parameters)[:, : n + 1]).all(axis=1)
+        if numbers.all():
+            return []
+        few = np.flatnonzero(~numbers)
+        rates = model.rates(t0[few], self._states[few], self._parameters[few])
+        found: list[int] = few[np.isfinite(rates).all(axis=1)].tolist()
+        return found
 
     def run(
         self,
@@ -179,11 +194,11 @@ class GeneralizedEnsemble(Shown):
         """
         asked, _ = self.system._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         # What is off its constraints would be put on them without a word; other starts tell by their status.
-        for member in range(len(self)) if self.system._constraints() else (0,):
+        for member in range(len(self)) if self.system._constraints() else (0, *self._beyond_domain()):
             try:
                 self[member]._check_start()
             except InvalidInput as error:
-                raise InvalidInput(error.argument, f"copy {member}: {error.message}") from None
+                raise _of_copy(member, error) from None
         result = None
         if executor is not None:
             from visviva.generalized._copies_apart import run_apart
@@ -201,3 +216,11 @@ class GeneralizedEnsemble(Shown):
             interrupted.trajectory = out
             raise
         return out
+
+
+def _of_copy(member: int, error: InvalidInput | ConvergenceError) -> InvalidInput | ConvergenceError:
+    """Give the error of one copy, with its number."""
+    message = f"copy {member}: {error.message}"
+    if isinstance(error, InvalidInput):
+        return InvalidInput(error.argument, message)
+    return ConvergenceError(message, error.time)

@@ -190,7 +190,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
             )
         lasts = [self[member]._last for member in range(len(self))]
         states, n = np.array([state for _, state in lasts]), len(self.ensemble.system.coordinates)
-        system = self.ensemble.system._at(None, None, t0=lasts[0][0])
+        # The start that other copies of it would have is that of the first, as in scenes: where it was is long past.
+        system = self.ensemble.system._at(states[0, :n], states[0, n:], t0=lasts[0][0])
         own = dict(zip(system.parameters, self.ensemble._parameters.T, strict=True))
         return type(self.ensemble)(system, states[:, :n], states[:, n:], own)
 

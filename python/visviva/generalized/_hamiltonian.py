@@ -15,7 +15,7 @@ from visviva.generalized._equations import HamiltonsEquations, hamiltons_equatio
 from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
-from visviva.generalized._starts import refuse_a_start
+from visviva.generalized._starts import refuse_a_start, refuse_beyond_domain
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
 
@@ -264,6 +264,9 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         return canonical_test(self, transformation)
 
     def _check_start(self) -> None:
-        rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
-        if not all(map(isfinite, rates.tolist())):
+        here = np.array([self.t0]), self._start()[None, :], self._values[None, :]
+        if not all(map(isfinite, self._model.rates(*here)[0].tolist())):
             refuse_a_start(self, self._start(), "a rate of Hamilton's equations is no number")
+        # Rates of log(q) are numbers where H is none.
+        if not isfinite(self._model.columns(*here)[0, len(self.coordinates)]):
+            refuse_beyond_domain(self)

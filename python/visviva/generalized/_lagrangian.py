@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, isnan
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,7 +15,7 @@ from visviva.generalized._equations import EquationsOfMotion, euler_lagrange
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
-from visviva.generalized._starts import refuse_a_start
+from visviva.generalized._starts import refuse_a_start, refuse_beyond_domain
 from visviva.generalized._symbolic import sympy as imported_sympy
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._variations import Variations
@@ -62,7 +62,8 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     nonholonomic : sequence of sympy.Expr or callable, optional
         The left sides of constraints a(q, t)·q̇ + b(q, t) = 0.
     consistent : {"project"}, optional
-        Puts a start that violates the constraints on them; it is refused otherwise.
+        Puts a start that violates the constraints on them, also those that `at` and `ensemble` make; they are
+        refused otherwise.
     t0 : float
         The time of the start.
 
@@ -71,6 +72,8 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     InvalidInput
         For symbols without a value, functions that the core does not know, coordinates without kinetic energy, starts
         off the constraints.
+    ConvergenceError
+        Where a start to be put on the constraints comes to none.
 
     References
     ----------
@@ -123,9 +126,12 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
             self._prepare(source, values, (position, velocity, t0))
         except InvalidInput as error:
             raise _named(error, source.names) from None
-        if wants_projection(consistent) and self._constraints() and self.position is not None:
-            state = projected(self, self._start(), self._values)
-            self._prepare(source, values, (state[: len(source.names)], state[len(source.names) :], t0), self._model)
+        if wants_projection(consistent):
+            state: Any = (position, velocity, t0)
+            if self._constraints() and self.position is not None:
+                nearest, n = projected(self, self._start(), self._values), len(source.names)
+                state = (nearest[:n], nearest[n:], t0)
+            self._prepare(source, values, state, self._model, projects=True)
 
     @property
     def velocity(self) -> NDArray[np.float64]:
@@ -303,23 +309,14 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         state = self._start()
         if self._constraints():
             check_on_constraints(self, state)
-        if self._has_rates(state):
-            # Beyond its domain a function may still have numbers for rates, as −√(1 − v²) of a velocity above 1.
-            if isnan(self.energy):
-                raise InvalidInput(
-                    "velocity",
-                    "the energy is no number at the start: L is not defined for this velocity here; start where it is",
-                )
-            return
-        index = int(np.argmin(np.isfinite(self._rates(state))))
-        refuse_a_start(self, state, f"the acceleration of {self.coordinates[index]!r} is no number")
-
-    def _rates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
-        rates: NDArray[np.float64] = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
-        return rates
-
-    def _has_rates(self, state: NDArray[np.float64]) -> bool:
-        return all(map(isfinite, self._rates(state).tolist()))
+        here = np.array([self.t0]), state[None, :], self._values[None, :]
+        rates = self._model.rates(*here)[0].tolist()
+        if not all(map(isfinite, rates)):
+            index = list(map(isfinite, rates)).index(False)
+            refuse_a_start(self, state, f"the acceleration of {self.coordinates[index]!r} is no number")
+        # Beyond its domain a function may still have numbers for rates, as −√(1 − v²) of a velocity above 1.
+        if not all(map(isfinite, self._model.columns(*here)[0, : len(self.coordinates) + 1].tolist())):
+            refuse_beyond_domain(self)
 
 
 def _named(error: InvalidInput, names: tuple[str, ...]) -> InvalidInput:

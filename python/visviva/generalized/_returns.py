@@ -109,6 +109,7 @@ def gauge_part(system: Lagrangian, turn: float) -> float:
 def _by_return(system: _Of, turn: float | None) -> tuple[float, float]:
     """Give the period, and the time along which the coordinate goes the way of the turn."""
     start = system._start()
+    system._check_start()
     rates = _rates(system, start)
     if not rates.any():
         raise InvalidInput("position", "the motion stands still: an equilibrium; see equilibria()")
@@ -152,27 +153,44 @@ def _return_time(system: _Of, start: NDArray[np.float64], turn: float | None, fo
     rates = _rates(system, start)
     span = _shortest_time(system, start, rates)
     far = np.zeros(2) if turn is None else np.array([turn, 0.0])
-    why = ""
+    why = further = ""
     for _ in range(_DOUBLINGS):
         span *= 2.0
         try:
-            times, states, sizes = _crossings(system, start, rates, far, forward * span)
+            result = _followed(system, start, rates, far, forward * span)
+            if result["endings"][0] == "too many steps":
+                why, further = f" in {_MOST_STEPS} steps, until t = {result['reached'][0]:.6g}", _of_many_steps(system)
+                break
+            whole(result, "motion")
         except ConvergenceError as error:
-            # Who asks for a period passes no steps.
-            why = f" ({error})".replace("; pass a larger max_steps", "")
+            why = f" ({error})"
             break
+        times, states = result["found_t"] - system.t0, result["found_y"]
+        along = np.concatenate([states, result["y"], start[None, :]])
+        sizes = np.ptp(along, axis=0) + np.abs(along).max(axis=0)
         same = (np.abs(states - start - far) <= _SAME * sizes).all(axis=1) & (np.abs(times) > 1e-3 * _SAME * span)
         if same.any():
             return float(abs(times[np.argmax(same)]))
     if turn is None:
-        raise InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}")
-    raise InvalidInput("turn", f"the motion does not come to its start after a turn{why}; {_OF_AN_OSCILLATION}")
+        raise InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}{further}")
+    raise InvalidInput(
+        "turn", f"the motion does not come to its start after a turn{why}; {_OF_AN_OSCILLATION}{further}"
+    )
 
 
-def _crossings(
+def _of_many_steps(system: _Of) -> str:
+    """Say how a period of more steps than are taken here is found: no argument of it changes their number."""
+    passing = f"vv.events.coordinate({system.coordinates[0]!r}, place, direction=1)"
+    told = f"; one of more steps is the time between two events of run(t, events=[{passing}])"
+    if system._source.kind == "hamiltonian":
+        return told
+    return f"{told}; near a limit of the velocity, as that of light, the same motion takes far fewer as a Hamiltonian"
+
+
+def _followed(
     system: _Of, start: NDArray[np.float64], rates: NDArray[np.float64], far: NDArray[np.float64], span: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Give times since the start and states where the flow passes a line across it there, and how far it goes."""
+) -> dict[str, Any]:
+    """Give the motion for a time, its events where the flow passes a line across it at the start."""
     end = system.t0 + span
     # Each number by how fast it changes: of a motion that begins at a turning point the momentum alone does.
     name = int(np.argmax(np.abs(rates) * np.array([abs(start[1]) or 1.0, abs(start[0]) or 1.0])))
@@ -185,11 +203,7 @@ def _crossings(
     asked["max_steps"] = _MOST_STEPS
     function = {"nodes": c._nodes.all, "root": section._place, "energy": None, "function": None}
     asked["events"] = [function | {"direction": float(np.sign(rates[name])), "last": None}]
-    result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
-    whole(result, "motion")
-    times, states = result["found_t"] - system.t0, result["found_y"]
-    along = np.concatenate([states, result["y"], start[None, :]])
-    return times, states, np.ptp(along, axis=0) + np.abs(along).max(axis=0)
+    return system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
 
 
 def _shortest_time(system: _Of, start: NDArray[np.float64], rates: NDArray[np.float64]) -> float:

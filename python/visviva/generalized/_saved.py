@@ -1,7 +1,8 @@
 """Files of runs in generalized coordinates: what `GeneralizedTrajectory.save` writes and `visviva.load` reads.
 
 A file of version 1 holds ``header`` and arrays. The header has the system as the core takes it (``source``, its nodes
-are the equations), a state of it, the method and the definitions of events; arrays are ``start`` (B, 2n) and
+are the equations), a state of it, ``projects`` if starts are put on its constraints, the method and the definitions of
+events; arrays are ``start`` (B, 2n) and
 ``parameters`` (B, P) of the copies, one of a single run; ``times`` (T,) that were asked for; ``t`` and ``y``, rows of
 all copies one after the other, ``lengths`` of them; ``status``, ``steps``, ``evaluations`` and ``longest_step`` of each
 copy; what events found: ``found`` of each copy, ``events/which``, ``events/t`` and ``events/state``; and, but in the
@@ -130,6 +131,8 @@ class Saved:
             "method": method,
             "events": [_event(event) for event in looked_for],
         }
+        if system._projects:
+            header["projects"] = True
         kept = {name: np.asarray(arrays[name], dtype=dtype) for name, (dtype, _) in (_ARRAYS | _LAST).items()}
         write(path, header, kept)
 
@@ -276,7 +279,8 @@ def _system(header: dict[str, Any]) -> GeneralizedSystem:
     ):
         raise Damaged("the file has equations of another system than its own")
     state = (header["position"], header["second"], header["t0"])
-    return as_system(_system_from_parts(_kinds()[source.kind], source, header["values"], state))
+    projects = header.get("projects") is True
+    return as_system(_system_from_parts(_kinds()[source.kind], source, header["values"], state, projects))
 
 
 def _kinds() -> dict[str, type[GeneralizedSystem]]:

@@ -157,8 +157,8 @@ class SmallMotions:
         ------
         InvalidInput
             For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does, or
-            whose energy does not repeat after it), one on a separatrix, or one that comes to a place where its force is
-            infinite.
+            whose energy does not repeat after it), one on a separatrix, one that comes to a place where its force is
+            infinite, or one followed along itself (see the notes) for more than 100000 steps.
 
         Notes
         -----

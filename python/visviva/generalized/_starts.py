@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["refuse_a_start"]
+__all__ = ["refuse_a_start", "refuse_beyond_domain"]
 
 #: A state beside the start: by this part of each number, or by this where it is 0.
 _BESIDE = 1e-3
@@ -57,6 +57,44 @@ def refuse_a_start(system: Lagrangian | Hamiltonian, state: NDArray[np.float64],
         f"{what} at the start: a singularity of these coordinates, or a mass matrix that is singular there; start away "
         "from it or take other coordinates",
     )
+
+
+def refuse_beyond_domain(system: Lagrangian | Hamiltonian) -> NoReturn:
+    """Refuse a start where rates are numbers, but the energy or a momentum is none.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        In any case.
+    """
+    n = len(system.coordinates)
+    state = system._start()
+    function, names = "H", []
+    values = _momenta_and_energy(system, state)
+    if system._source.kind == "lagrangian":
+        function, names = "L", [f"the momentum of {name!r}" for name in system.coordinates]
+    undefined = [name for name, value in zip([*names, "the energy"], values, strict=True) if not np.isfinite(value)]
+    which = " and ".join(undefined)
+    at_rest = _momenta_and_energy(system, np.concatenate([state[:n], np.zeros(n)]))
+    argument = system._second_name if np.isfinite(at_rest).all() else "position"
+    if np.isnan(values).any():
+        are = "is no number" if len(undefined) == 1 else "are no numbers"
+        raise InvalidInput(argument, f"{which} {are} at the start: {function} is not defined there; start where it is")
+    are = "is" if len(undefined) == 1 else "are"
+    raise InvalidInput(
+        argument,
+        f"{which} {are} infinite at the start: {function} is not defined there, or what it is made of is beyond "
+        "1.8e308; start elsewhere, or take other units",
+    )
+
+
+def _momenta_and_energy(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the momenta of a Lagrangian at a state, and the energy; of a Hamiltonian the energy."""
+    columns: NDArray[np.float64] = system._model.columns(
+        np.array([system.t0]), state[None, :], system._values[None, :]
+    )[0]
+    n = len(system.coordinates)
+    return columns[: n + 1] if system._source.kind == "lagrangian" else columns[n : n + 1]
 
 
 def _rates(system: Lagrangian | Hamiltonian, state: NDArray[np.float64]) -> NDArray[np.float64]:

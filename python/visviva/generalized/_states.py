@@ -33,7 +33,7 @@ __all__ = ["States", "as_system"]
 class States(Shown):
     """Base of `GeneralizedSystem`: what it is made of, and the same system elsewhere."""
 
-    __slots__ = ("_model", "_second", "_source", "_values", "coordinates", "parameters", "position", "t0")
+    __slots__ = ("_model", "_projects", "_second", "_source", "_values", "coordinates", "parameters", "position", "t0")
 
     coordinates: tuple[str, ...]
     parameters: dict[str, float]
@@ -43,6 +43,8 @@ class States(Shown):
     _model: _core.GeneralizedModel
     _values: NDArray[np.float64]
     _second: NDArray[np.float64]
+    #: Whether starts are put on the constraints: ``consistent="project"``.
+    _projects: bool
 
     #: What the second half of a state is called.
     _second_name = "velocity"
@@ -53,11 +55,13 @@ class States(Shown):
         values: list[Any],
         state: tuple[ArrayLike | None, ArrayLike | None, float],
         model: _core.GeneralizedModel | None = None,
+        projects: bool = False,
     ) -> None:
         position, second, t0 = state
         n = len(source.names)
         set_ = object.__setattr__
         set_(self, "_source", source)
+        set_(self, "_projects", projects)
         set_(self, "coordinates", source.names)
         numbers = [
             number(f"parameters[{name!r}]", value) for name, value in zip(source.parameters, values, strict=True)
@@ -74,7 +78,7 @@ class States(Shown):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self._second, self.t0)
-        return _system_from_parts, (type(self), self._source, self._values.tolist(), state)
+        return _system_from_parts, (type(self), self._source, self._values.tolist(), state, self._projects)
 
     def __repr__(self) -> str:
         names = ", ".join(self.coordinates)
@@ -124,12 +128,15 @@ class States(Shown):
         Returns
         -------
         Lagrangian or Hamiltonian
-            Another one; `self` stays as it is.
+            Another one; `self` stays as it is. If that was made with ``consistent="project"``, the new start is put on
+            the constraints, too.
 
         Raises
         ------
         InvalidInput
             For another shape, a parameter that is not there, velocities beside momenta, or those that do not follow.
+        ConvergenceError
+            Where a start to be put on the constraints comes to none.
 
         Examples
         --------
@@ -141,12 +148,13 @@ class States(Shown):
         """
         own, other = (velocity, momentum) if self._second_name == "velocity" else (momentum, velocity)
         if other is None:
-            return self._at(position, own, parameters, t0)
+            return self._at(position, own, parameters, t0)._on_constraints()
         name = self._other(own)
         moved = self._at(position, None, parameters, t0)
         n = len(self.coordinates)
         transform = as_system(moved).legendre_transform()
-        return moved._at(None, transform.conjugate(moved._start()[:n], float_array(name, other, (n,))))
+        conjugate = transform.conjugate(moved._start()[:n], float_array(name, other, (n,)))
+        return moved._at(None, conjugate)._on_constraints()
 
     def ensemble(
         self,
@@ -168,7 +176,8 @@ class States(Shown):
         parameters : dict, optional
             Values (B,) of some parameters.
         consistent : {"project"}, optional
-            Puts starts that violate the constraints on them; they are refused otherwise.
+            Puts starts that violate the constraints on them; they are refused otherwise. If not given, they are put
+            there if the system was made with it.
 
         Returns
         -------
@@ -179,6 +188,8 @@ class States(Shown):
         ------
         InvalidInput
             For shapes that do not go together, parameters that are not there, or velocities beside momenta.
+        ConvergenceError
+            Where a start to be put on the constraints comes to none.
 
         Examples
         --------
@@ -192,6 +203,8 @@ class States(Shown):
             own = self._conjugates(position, self._other(own), other, parameters)
         from visviva.generalized._ensemble import GeneralizedEnsemble
 
+        if consistent is None and self._projects:
+            consistent = "project"
         return GeneralizedEnsemble(as_system(self), position, own, parameters, consistent)
 
     def _other(self, own: ArrayLike | None) -> str:
@@ -230,8 +243,16 @@ class States(Shown):
             self._second if second is None else second,
             self.t0 if t0 is None else t0,
         )
-        other._prepare(self._source, self._with_parameters(parameters), state, self._model)
+        other._prepare(self._source, self._with_parameters(parameters), state, self._model, self._projects)
         return other
+
+    def _on_constraints(self) -> Self:
+        """Give the system at the nearest start on its constraints, where that was asked for when it was made."""
+        if not self._projects or not self._constraints() or self.position is None:
+            return self
+        state = self._model.projected(self.t0, self._start(), self._values)[2]
+        n = len(self.coordinates)
+        return self._at(state[:n], state[n:])
 
     def _with_parameters(self, changed: Mapping[Any, Any] | None) -> list[Any]:
         values: dict[str, Any] = dict(self.parameters)
@@ -260,9 +281,11 @@ def as_system(states: States) -> GeneralizedSystem:
     return found
 
 
-def _system_from_parts(cls: type[States], source: Source, values: list[float], state: Any) -> States:
+def _system_from_parts(
+    cls: type[States], source: Source, values: list[float], state: Any, projects: bool = False
+) -> States:
     system = object.__new__(cls)
-    system._prepare(source, values, state)
+    system._prepare(source, values, state, projects=projects)
     return system
 
 
