@@ -1,7 +1,7 @@
 """Motion in the potential of a formula: as exact as in a potential that is built in, at circles and beside them, too.
 
-What decides there is the difference of an energy and of two near it, which has no digits in float64: formulas are evaluated
-to thirty digits.
+What decides there is the difference of an energy and of two near it, which has no digits in float64: formulas are
+evaluated to thirty digits.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def test_formulas_are_as_good_as_what_is_built_in(
         for potential in (formula, built_in)
     )
     assert found.kind == known.kind == "bound"
-    # Constants of the formulas are rounded elsewhere: by a unit of the energy's last place, which near a circle is more of
-    # the little that is left of it.
+    # Constants of the formulas are rounded elsewhere: by a unit of the energy's last place, which near a circle is more
+    # of the little that is left of it.
     assert found.radial_period == pytest.approx(known.radial_period, rel=1e-13, abs=0.0)
     assert found.apsidal_angle == pytest.approx(known.apsidal_angle, rel=1e-13, abs=0.0)
     assert found.r_max - found.r_min == pytest.approx(known.r_max - known.r_min, rel=1e-10, abs=0.0)

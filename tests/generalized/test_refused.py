@@ -350,9 +350,13 @@ def test_a_velocity_beyond_the_domain_of_the_function() -> None:
         free.boundary_value(1.0, [1.5])
     with pytest.raises(vv.InvalidInput, match=told):
         fast.boundary_value(1.0, [0.5])
-    # Of light itself the energy is infinite.
-    with pytest.raises(vv.InvalidInput, match="the momentum of 'x' and the energy are infinite at the start: L is not"):
+    # Of light itself they are infinite.
+    with pytest.raises(vv.InvalidInput, match="the momentum of 'x' and the energy are no number or infinite at the"):
         free.at(velocity=[1.0]).run(1.0)
+    # An energy that is only beyond the range of numbers is no reason: the motion is x cos t.
+    far = vv.Lagrangian(lambda q, v, t: (v[0] ** 2 - q[0] ** 2) / 2.0, ["x"], position=[1e200])
+    for out in (far.run(1.0).position[-1, 0], far.ensemble(position=[[1e200]]).run(1.0).position[0, -1, 0]):
+        assert out == pytest.approx(1e200 * np.cos(1.0), rel=1e-14, abs=0)
     for threads in (1, 3):
         with pytest.raises(vv.InvalidInput, match=f"copy 2: {told}"):
             free.ensemble(velocity=[[0.5], [-0.5], [1.5], [2.0]]).run(1.0, threads=threads)

@@ -170,8 +170,8 @@ def test_a_formula_orbits_as_well_as_what_is_built_in() -> None:
 
 
 def test_the_energy_of_the_top_of_a_hill_is_one_like_others() -> None:
-    """Head-on nothing is to be told there, but that is of an area of nothing: Q(E) goes on through V(0) so smoothly that the
-    mean of both sides, 1e-9 away, has nine digits and more."""
+    """Head-on nothing is to be told there, but that is of no area: Q(E) goes on through V(0) so smoothly that the mean
+    of both sides, 1e-9 away, has nine digits and more."""
     hill = V.Custom(lambda r: 3.0 * np.exp(-r * r))
     below, at_top, above = s.transport_cross_section(hill, energy=[3.0 * (1.0 - 1e-9), 3.0, 3.0 * (1.0 + 1e-9)])
     assert at_top == pytest.approx(0.5 * (below + above), rel=1e-10, abs=0.0)

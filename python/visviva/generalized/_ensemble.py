@@ -18,6 +18,7 @@ from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajecto
 from visviva.generalized._resolved import warn_if_unresolved
 from visviva.generalized._runs import RTOL
 from visviva.generalized._source import _label
+from visviva.generalized._starts import is_beyond_domain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -128,12 +129,10 @@ class GeneralizedEnsemble(Shown):
 
     def _beyond_domain(self) -> list[int]:
         """Give copies with numbers for rates at the start, but none for the energy or a momentum: no status tells."""
-        model, n = self.system._model, len(self.system.coordinates)
-        t0 = np.full(len(self), self.system.t0)
-        numbers = np.isfinite(model.columns(t0, self._states, self._parameters)[:, : n + 1]).all(axis=1)
-        if numbers.all():
+        model, t0 = self.system._model, np.full(len(self), self.system.t0)
+        few = np.flatnonzero(is_beyond_domain(self.system, model.columns(t0, self._states, self._parameters)))
+        if not few.size:
             return []
-        few = np.flatnonzero(~numbers)
         rates = model.rates(t0[few], self._states[few], self._parameters[few])
         found: list[int] = few[np.isfinite(rates).all(axis=1)].tolist()
         return found

@@ -15,7 +15,7 @@ from visviva.generalized._equations import HamiltonsEquations, hamiltons_equatio
 from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
-from visviva.generalized._starts import refuse_a_start, refuse_beyond_domain
+from visviva.generalized._starts import is_beyond_domain, refuse_a_start, refuse_beyond_domain
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
 
@@ -268,5 +268,5 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         if not all(map(isfinite, self._model.rates(*here)[0].tolist())):
             refuse_a_start(self, self._start(), "a rate of Hamilton's equations is no number")
         # Rates of log(q) are numbers where H is none.
-        if not isfinite(self._model.columns(*here)[0, len(self.coordinates)]):
+        if is_beyond_domain(self, self._model.columns(*here))[0]:
             refuse_beyond_domain(self)

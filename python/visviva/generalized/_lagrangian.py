@@ -15,7 +15,7 @@ from visviva.generalized._equations import EquationsOfMotion, euler_lagrange
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
-from visviva.generalized._starts import refuse_a_start, refuse_beyond_domain
+from visviva.generalized._starts import is_beyond_domain, refuse_a_start, refuse_beyond_domain
 from visviva.generalized._symbolic import sympy as imported_sympy
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._variations import Variations
@@ -315,7 +315,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
             index = list(map(isfinite, rates)).index(False)
             refuse_a_start(self, state, f"the acceleration of {self.coordinates[index]!r} is no number")
         # Beyond its domain a function may still have numbers for rates, as −√(1 − v²) of a velocity above 1.
-        if not all(map(isfinite, self._model.columns(*here)[0, : len(self.coordinates) + 1].tolist())):
+        if is_beyond_domain(self, self._model.columns(*here))[0]:
             refuse_beyond_domain(self)
 
 

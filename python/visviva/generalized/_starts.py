@@ -13,11 +13,14 @@ if TYPE_CHECKING:
 
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._states import States
 
-__all__ = ["refuse_a_start", "refuse_beyond_domain"]
+__all__ = ["is_beyond_domain", "refuse_a_start", "refuse_beyond_domain"]
 
 #: A state beside the start: by this part of each number, or by this where it is 0.
 _BESIDE = 1e-3
+#: The squares of such numbers are beyond the range.
+_OVERFLOWS = 1e150
 
 
 def refuse_a_start(system: Lagrangian | Hamiltonian, state: NDArray[np.float64], what: str) -> NoReturn:
@@ -59,6 +62,18 @@ def refuse_a_start(system: Lagrangian | Hamiltonian, state: NDArray[np.float64],
     )
 
 
+def is_beyond_domain(system: States, columns: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell states, by the columns of the core, in which the energy is no number or a momentum none or infinite.
+
+    An energy alone may be infinite: of numbers whose squares are beyond the range.
+    """
+    n = len(system.coordinates)
+    beyond: NDArray[np.bool_] = np.isnan(columns[:, n])
+    if system._source.kind == "lagrangian":
+        beyond |= ~np.isfinite(columns[:, :n]).all(axis=1)
+    return beyond
+
+
 def refuse_beyond_domain(system: Lagrangian | Hamiltonian) -> NoReturn:
     """Refuse a start where rates are numbers, but the energy or a momentum is none.
 
@@ -77,14 +92,14 @@ def refuse_beyond_domain(system: Lagrangian | Hamiltonian) -> NoReturn:
     which = " and ".join(undefined)
     at_rest = _momenta_and_energy(system, np.concatenate([state[:n], np.zeros(n)]))
     argument = system._second_name if np.isfinite(at_rest).all() else "position"
-    if np.isnan(values).any():
+    if np.isnan(values).any() and np.abs(state).max() < _OVERFLOWS:
         are = "is no number" if len(undefined) == 1 else "are no numbers"
         raise InvalidInput(argument, f"{which} {are} at the start: {function} is not defined there; start where it is")
     are = "is" if len(undefined) == 1 else "are"
     raise InvalidInput(
         argument,
-        f"{which} {are} infinite at the start: {function} is not defined there, or what it is made of is beyond "
-        "1.8e308; start elsewhere, or take other units",
+        f"{which} {are} no number or infinite at the start: {function} is not defined there, or what it is made of is "
+        "beyond 1.8e308; start elsewhere, or take other units",
     )
 
 
