@@ -23,7 +23,12 @@ pub struct Rows<const N: usize> {
 impl<const N: usize> Rows<N> {
     /// From rows and the places where they begin, which ascend.
     pub fn new(starts: Vec<f64>, rows: Vec<[f64; N]>) -> Self {
-        let count = (2 * starts.len()).max(1);
+        Self::with_bins(starts, rows, 2)
+    }
+    /// The same with so many bins to each row: of arguments that nothing foretells, the more there are the fewer fall into one
+    /// with a place in it, where a comparison goes either way.
+    pub fn with_bins(starts: Vec<f64>, rows: Vec<[f64; N]>, to_each: usize) -> Self {
+        let count = (to_each * starts.len()).max(1);
         let range = starts.last().zip(starts.first()).map_or(1.0, |(last, first)| last - first);
         let mut made = Self { starts, rows, before: vec![0; count + 1], per_length: count as f64 / range };
         for index in 0..made.starts.len() {

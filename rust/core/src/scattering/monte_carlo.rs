@@ -11,6 +11,7 @@
 //! An event of a beam whose projectiles differ in energy or direction is no function of one draw: it is followed by
 //! itself, with the draws after these. Which draw is for what is written in `draws.rs`.
 
+mod abreast;
 mod beam;
 mod channels;
 mod draws;
@@ -34,6 +35,7 @@ use super::histogram::{Lookup, Steps};
 use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::{Error, Result};
+use abreast::Abreast;
 use core::ops::Range;
 use draws::{CHANNEL, COMPONENT, Draws, PLACE};
 
@@ -195,8 +197,8 @@ type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
 enum Program<'a> {
     /// By looking up their draws.
     Steps(Stepped),
-    /// One by one.
-    Drawn(&'a Mixture, &'a [Tally]),
+    /// One by one, or eight side by side where that is faster.
+    Drawn(&'a Mixture, &'a [Tally], Option<Abreast<'a>>),
 }
 
 /// Events as step functions of their draws.
@@ -247,7 +249,7 @@ impl<'a> Program<'a> {
         let differ = differ(tallies);
         let told = mixture.channels();
         if mixture.is_drawn() || (differ && told.is_none()) {
-            return Ok(Self::Drawn(mixture, tallies));
+            return Ok(Self::Drawn(mixture, tallies, Abreast::of(mixture, tallies)));
         }
         let (channel, channels) =
             told.filter(|_| differ).map_or((None, 1), |channels| (channels.lookup(), channels.count()));
@@ -261,7 +263,7 @@ impl<'a> Program<'a> {
             Self::Steps(Stepped { steps, .. }) => {
                 steps.iter().map(|steps| steps.iter().map(Steps::counters).collect()).collect()
             }
-            Self::Drawn(mixture, tallies) => {
+            Self::Drawn(mixture, tallies, _) => {
                 let strata = mixture.histograms();
                 tallies.iter().map(|tally| vec![vec![0; tally.slots() * strata]]).collect()
             }
@@ -279,8 +281,13 @@ impl<'a> Program<'a> {
             ticker.control().count(stop - event);
             match self {
                 Self::Steps(stepped) => stepped.look_up(seed, event..stop, &mut counters),
-                Self::Drawn(mixture, tallies) => {
-                    follow(mixture, tallies, seed, event..stop, &mut counters);
+                Self::Drawn(mixture, tallies, abreast) => {
+                    let alone =
+                        |event: u64, counters: &mut [_]| follow(mixture, tallies, (seed, event), counters);
+                    match abreast {
+                        Some(abreast) => abreast.count(key(seed), event..stop, &mut counters, alone),
+                        None => (event..stop).for_each(|event| alone(event, &mut counters)),
+                    }
                 }
             }
             event = stop;
@@ -345,18 +352,16 @@ impl Stepped {
     }
 }
 
-/// Counts events one by one.
-fn follow(mixture: &Mixture, tallies: &[Tally], seed: u64, events: Range<u64>, counters: &mut Counters) {
-    for event in events {
-        let draws = Draws::new(seed, event);
-        let Some((_, beam)) = mixture.component(draws.bits(COMPONENT)) else { continue };
-        let arrival = beam.arrival(draws);
-        let half = beam.half_angle(&arrival);
-        for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
-            let slot = tally.slot_of(beam, &arrival, half);
-            if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
-                *counter += 1;
-            }
+/// Counts an event by itself.
+fn follow(mixture: &Mixture, tallies: &[Tally], (seed, event): (u64, u64), counters: &mut [Vec<Vec<u64>>]) {
+    let draws = Draws::new(seed, event);
+    let Some((_, beam)) = mixture.component(draws.bits(COMPONENT)) else { return };
+    let arrival = beam.arrival(draws);
+    let half = beam.half_angle(&arrival);
+    for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
+        let slot = tally.slot_of(beam, &arrival, half);
+        if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
+            *counter += 1;
         }
     }
 }

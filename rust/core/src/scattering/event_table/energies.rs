@@ -24,7 +24,7 @@ const CERTIFYING: u64 = 768;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Energies {
     /// Each with its energy and its weight in the barycentric formula.
-    tables: Vec<(f64, f64, EventTable)>,
+    pub(super) tables: Vec<(f64, f64, EventTable)>,
     error: f64,
 }
 

@@ -9,12 +9,14 @@
 //! arithmetic that is the same everywhere. So are a table's bits and its [`hash`](EventTable::hash).
 //! Source: W. Press et al., *Numerical Recipes*, §5.8 (Chebyshev series, Clenshaw's recurrence).
 
+mod abreast;
 mod build;
 mod energies;
 
 use crate::numerics::angles::atan2;
 use build::Built;
 
+pub use abreast::{BINS, EnergiesAbreast, TableAbreast};
 pub use build::{MOST_ERROR, TOLERANCE};
 pub use energies::Energies;
 

@@ -4,6 +4,7 @@ mod beyond;
 mod range;
 mod turning;
 
+use super::abreast::Meeting;
 use super::channels::{Channels, Exit};
 use super::draws::{CHANNEL, Draws, PLACE};
 use super::profile::{Direction, Profile};
@@ -13,7 +14,7 @@ use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::Ticker;
 use crate::potentials::Potential;
 use crate::scattering::deflection::Deflector;
-use crate::scattering::event_table::{Energies, EventTable, TOLERANCE};
+use crate::scattering::event_table::{Energies, EnergiesAbreast, EventTable, TOLERANCE, TableAbreast};
 use crate::scattering::kinematics::{Collision, HalfAngle};
 use crate::scattering::rutherford::half_distance;
 use crate::words::number;
@@ -296,6 +297,18 @@ impl Beam {
             Quantity::RecoilAngle => arrival.direction.turned(value, true),
             _ => value,
         })
+    }
+    /// Its collision, if it has no channel but the elastic one.
+    pub(super) fn elastic(&self) -> Option<Collision> {
+        if let [Exit::Elastic(collision)] = *self.exits { Some(collision) } else { None }
+    }
+    /// What eight of its events meet at once.
+    pub(super) fn meeting(&self) -> Meeting {
+        match &self.target {
+            Target::Coulomb { reach, .. } => Meeting::Coulomb(reach / self.energy),
+            Target::Table(table, _) => Meeting::Table(TableAbreast::new(table)),
+            Target::Tables(tables, _) => Meeting::Tables(EnergiesAbreast::new(tables)),
+        }
     }
     /// Whether a quantity is a function of one draw.
     pub(super) fn is_of_one_draw(&self, quantity: Quantity) -> bool {

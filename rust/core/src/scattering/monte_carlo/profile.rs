@@ -10,7 +10,7 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 /// Gaussians end at so many standard deviations: beyond are 1.5e-8 of two dimensions.
 const CUT: f64 = 6.0;
 /// 1 − e^(−CUT²/2).
-const WITHIN: f64 = 0.999_999_984_770_020_2;
+pub(super) const WITHIN: f64 = 0.999_999_984_770_020_2;
 /// Spots between these parts of the disc's radius.
 const SPOTS: [f64; 2] = [1e-6, 1e3];
 
