@@ -33,6 +33,16 @@ impl<const N: usize> Piecewise<N> {
     #[inline(always)]
     pub(crate) fn derivative<S: Analytic>(&self, r: S, order: usize) -> S {
         let row = r.columns(&self.rows);
+        self.of_row(&row, r, order)
+    }
+    /// V(r) and its first two derivatives, of a row that is looked up once.
+    #[inline(always)]
+    pub(crate) fn derivatives<S: Analytic>(&self, r: S) -> [S; 3] {
+        let row = r.columns(&self.rows);
+        [self.of_row(&row, r, 0), self.of_row(&row, r, 1), self.of_row(&row, r, 2)]
+    }
+    #[inline(always)]
+    fn of_row<S: Analytic>(&self, row: &[S; N], r: S, order: usize) -> S {
         let t = (r - row[0]) * row[1];
         let mut sum = S::zero();
         let mut k = N - COLUMNS;

@@ -125,4 +125,9 @@ impl Formula for Tabulated {
     fn curvature<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         self.curve.derivative(r, 2)
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, _: &Numbers<S>, r: S) -> [S; 3] {
+        let [value, slope, bend] = self.curve.derivatives(r);
+        [value, -slope, bend]
+    }
 }

@@ -25,6 +25,9 @@ const UNCHANGED: f64 = 1e-8;
 const LOOSER: [f64; INTEGRALS] = [1.0, 10.0, 100.0];
 /// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
+/// So many pieces of V at most are together in an interval at first, none longer than this: of eight, each has a point.
+const GROUP: usize = 8;
+const TOGETHER: f64 = 0.25;
 /// Up to this w at most the mean force is taken.
 const NEAR: f64 = 0.25;
 /// What is left out at the far end, as a part of the tolerance.
@@ -142,7 +145,8 @@ impl Interval {
     }
 }
 
-/// The integrals over all w ≥ 0 with intervals that end at the given distances.
+/// The integrals over all w ≥ 0 with intervals that end at the given distances; at those where V is no more than not smooth,
+/// where that matters.
 pub(super) fn integrate(
     profile: &Profile,
     pair: &Pair,
@@ -171,7 +175,12 @@ pub(super) fn integrate(
         integral: core::array::from_fn(|i| known[i] + totals.integral[i]),
         error: totals.error[0].max(ROUNDING * (totals.size[0] + 0.5 * totals.rounded)),
     };
-    marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
+    let places = |ends: &[f64]| -> Vec<f64> {
+        ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)).collect()
+    };
+    marks.extend(places(ends));
+    let breaks: Vec<f64> = places(profile.breaks()).into_iter().filter(|w| *w < end).collect();
+    marks.extend(grouped(&breaks));
     if pair.near < BESIDE {
         // What is steep without measure would begin at nothing, which no factor makes more of.
         let first = pair.near.max(NEAREST);
@@ -193,7 +202,26 @@ pub(super) fn integrate(
             intervals.push(rule(&subject, (integrand, wanted), [from, to]));
         }
     }
-    let most = MOST.max(2 * intervals.len());
+    let least = tolerance / intervals.len() as f64;
+    let most = MOST.max(2 * (intervals.len() + breaks.len()));
+    let sizes = totals(&intervals).size;
+    let rough = |interval: &Interval| {
+        (0..wanted).any(|i| interval.error[i] > (least * LOOSER[i] * sizes[i]).max(noise[i]))
+    };
+    for at in 0..intervals.len() {
+        let [from, to] = intervals[at].ends;
+        let within = &breaks[breaks.partition_point(|w| *w <= from)..breaks.partition_point(|w| *w < to)];
+        if !within.is_empty() && rough(&intervals[at]) {
+            let ends: Vec<f64> = [from].into_iter().chain(within.iter().copied()).chain([to]).collect();
+            let mut parts =
+                ends.windows(2).map(|ends| rule(&subject, (integrand, wanted), [ends[0], ends[1]]));
+            if let Some(first) = parts.next() {
+                intervals[at] = first;
+                let rest: Vec<Interval> = parts.collect();
+                intervals.extend(rest);
+            }
+        }
+    }
     loop {
         let totals = totals(&intervals);
         let Totals { error, loose, size, .. } = &totals;
@@ -220,6 +248,23 @@ pub(super) fn integrate(
         intervals[at] = first;
         intervals.push(second);
     }
+}
+
+/// Of places at which V is not smooth those between which there are so many as a rule sees each of: the first, where what is
+/// beside the turning point ends, and others.
+fn grouped(breaks: &[f64]) -> Vec<f64> {
+    let mut kept: Vec<f64> = Vec::new();
+    let mut since = 0;
+    for (at, &w) in breaks.iter().enumerate() {
+        let next = breaks.get(at + 1).copied().unwrap_or(f64::INFINITY);
+        let far = kept.last().is_none_or(|last| next - last > TOGETHER);
+        since += 1;
+        if at == 0 || since == GROUP || far {
+            kept.push(w);
+            since = 0;
+        }
+    }
+    kept
 }
 
 /// Sums over intervals, in the order of the line.

@@ -307,7 +307,7 @@ impl Quadrature<'_> {
 
     /// The integrals, and how far the first may be off.
     fn by_intervals(&self, pair: &Pair, integrand: Integrand, barriers: &[f64]) -> ([f64; INTEGRALS], f64) {
-        let ends = [barriers, self.profile.breaks(), self.profile.marks()].concat();
+        let ends = [barriers, self.profile.marks()].concat();
         let wanted = if self.all && integrand == Integrand::Deflection { INTEGRALS } else { 1 };
         let whole =
             adaptive::integrate(self.profile, pair, integrand, &ends, (self.tolerance, self.refined), wanted);
