@@ -48,11 +48,7 @@ impl LinearMotion {
             Output::Node(id) => Some(*id),
             Output::Unknown(_) => None,
         });
-        let Some(right) =
-            (if masses { Some(model.right.clone()) } else { rates.collect::<Option<Vec<Id>>>() })
-        else {
-            return None;
-        };
+        let right = if masses { model.right.clone() } else { rates.collect::<Option<Vec<Id>>>()? };
         let mut graph = model.source.graph.clone();
         let varies =
             |graph: &Graph, ids: &[Id]| ids.iter().any(|&id| graph.dependence(id) > Dependence::Parameters);

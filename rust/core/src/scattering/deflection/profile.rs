@@ -250,24 +250,34 @@ impl Profile {
     }
     /// V and −dV/dr at one distance, to about thirty digits; none beyond its range.
     pub(super) fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-        if r.high() > self.domain[1] {
+        if r > DoubleDouble::from(self.domain[1]) {
             return (DoubleDouble::default(), DoubleDouble::default());
         }
         self.potential.precise(r)
     }
     /// The first of them.
     pub(super) fn precise_value(&self, r: DoubleDouble) -> DoubleDouble {
-        if r.high() > self.domain[1] { DoubleDouble::default() } else { self.potential.precise_value(r) }
+        if r > DoubleDouble::from(self.domain[1]) {
+            DoubleDouble::default()
+        } else {
+            self.potential.precise_value(r)
+        }
     }
     /// Beyond which V is zero, in the caller's units.
     pub(super) fn range(&self) -> f64 {
         let edge = self.breaks.last().copied().filter(|r| self.value(r.next_up()) == 0.0);
         self.give_length(edge.unwrap_or(self.domain[1]).min(self.domain[1]))
     }
-    /// The positive extrema of U, in the caller's units.
+    /// The positive extrema of U, and U at its rim, in the caller's units.
     pub(super) fn critical_energies(&self) -> Vec<f64> {
-        let inner = self.extrema.iter().skip(1).take(self.extrema.len().saturating_sub(2));
+        let ends = if self.domain[1] < f64::INFINITY { 1 } else { 2 };
+        let inner = self.extrema.iter().skip(1).take(self.extrema.len().saturating_sub(ends));
         inner.map(|[_, u]| scale(*u, self.energy)).filter(|u| *u > 0.0).collect()
+    }
+    /// Where V ends, if it still pulls there so hard that at this energy h falls up to its rim: it is a barrier without a top.
+    pub(super) fn pulling_rim(&self, energy: f64) -> Option<f64> {
+        let rim = self.extrema.last().filter(|[r, u]| *r == self.domain[1] && *u >= energy);
+        rim.map(|[r, _]| *r)
     }
     /// Whether V goes to zero far out.
     pub(super) fn vanishes(&self) -> bool {
@@ -299,7 +309,7 @@ impl Profile {
         TOUCHES * (self.value(r).abs() + (0.5 * r * self.force(r)).abs())
     }
 
-    /// The extrema of U on the grid and between its places, each refined, and the ends.
+    /// The extrema of U on the grid and between its places, each refined, and the ends; of a V that ends, its rim.
     fn find_extrema(&self, between: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let [first, last] = self.grid.inside;
         let circular = |[r, value, pull]: [f64; 3]| {
@@ -311,6 +321,10 @@ impl Profile {
             places.extend(between.iter().copied().filter(|[r, ..]| *r > low && *r < high).map(circular));
             places.sort_by(|a, b| a[0].total_cmp(&b[0]));
             places.dedup_by(|a, b| a[0] == b[0]);
+        }
+        let rim = self.domain[1];
+        if rim < f64::INFINITY && places.last().is_some_and(|[high, ..]| *high < rim) {
+            places.push(circular([rim, self.value(rim), rim * self.force(rim)]));
         }
         places.retain(|[_, u, _]| u.is_finite());
         let Some(&[low, below, _]) = places.first() else { return Vec::new() };

@@ -6,6 +6,9 @@ use super::profile::{Center, Profile};
 /// Edges of V beyond which a table is taken for smooth.
 const MANY: usize = 8;
 
+/// Nearer than this part of it b is no less than a rim: what is left of G there is rounding.
+const TOUCHED: f64 = 8.0 * f64::EPSILON;
+
 /// Where the way in leads.
 #[derive(Clone, Debug)]
 pub(super) enum Way {
@@ -41,11 +44,14 @@ impl Critical {
             *self = Self::default();
         }
         let radii = &self.radii;
+        let rim = profile.pulling_rim(energy);
         let mut outside = f64::INFINITY;
         // Inward h falls to the first of each pair and rises to the second.
         for at in (0..radii.len()).step_by(2) {
             let lowest = radii[at];
-            if !Profile::reached(lowest, profile.value(lowest), energy, b) {
+            // What but touches a rim is not told from what passes it.
+            let least = if Some(lowest) == rim { lowest * (1.0 - TOUCHED) } else { f64::INFINITY };
+            if b >= least || !Profile::reached(lowest, profile.value(lowest), energy, b) {
                 return Self::turns(profile, energy, b, [lowest, outside], radii[..=at].to_vec());
             }
             let Some(highest) = radii.get(at + 1) else { return Way::Captured };
@@ -95,15 +101,16 @@ pub(super) fn edges(profile: &Profile, energy: f64) -> Vec<Edge> {
     let radii = if e < profile.one_turning_point_from() { profile.critical_radii(e) } else { Vec::new() };
     let mut critical = Critical::default();
     let mut edges: Vec<Edge> = Vec::new();
+    let rim = profile.pulling_rim(e);
     for r in radii.iter().step_by(2) {
         let rest = 1.0 - profile.value(*r) / e;
-        let b = r * rest.max(0.0).sqrt();
+        let b = if Some(*r) == rim { *r } else { r * rest.max(0.0).sqrt() };
         let hidden = edges.iter().any(|edge| edge.impact_parameter <= profile.give_length(b));
         if b > 0.0 && !hidden {
             let captures = matches!(critical.way(profile, e, b * (1.0 - 1e-9)), Way::Captured);
             edges.push(Edge {
                 impact_parameter: profile.give_length(b),
-                orbit: Some(profile.give_length(*r)),
+                orbit: (Some(*r) != rim).then(|| profile.give_length(*r)),
                 captures,
             });
         }
@@ -125,5 +132,7 @@ pub(super) fn nearness(profile: &Profile, energy: f64, b: f64, barriers: &[f64])
         let rest = 1.0 - profile.value(*r) / energy;
         if rest > 0.0 { (r * rest.sqrt() / b - 1.0).abs() } else { f64::INFINITY }
     };
-    barriers.iter().step_by(2).map(off).fold(f64::INFINITY, f64::min)
+    // Nothing stays on a rim.
+    let rim = profile.pulling_rim(energy);
+    barriers.iter().step_by(2).filter(|r| Some(**r) != rim).map(off).fold(f64::INFINITY, f64::min)
 }

@@ -8,10 +8,11 @@ use super::super::search::bisected;
 use super::Profile;
 
 impl Profile {
-    /// The distances where h of this energy is stationary, from the outermost inward. Where U but touches the energy from
-    /// below, h is level and goes on as it did: that distance counts twice.
+    /// The distances where h of this energy is stationary, from the outermost inward, and before them the rim of a V that
+    /// pulls there, beyond which h rises again. Where U but touches the energy from below, h is level and goes on as it did:
+    /// that distance counts twice.
     pub(in super::super) fn critical_radii(&self, energy: f64) -> Vec<f64> {
-        let mut found = Vec::new();
+        let mut found: Vec<f64> = self.pulling_rim(energy).into_iter().collect();
         for (at, pair) in self.extrema.windows(2).enumerate().rev() {
             let ([low, below], [high, above]) = (pair[0], pair[1]);
             if (below < energy) != (above < energy) {
