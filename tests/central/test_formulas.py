@@ -79,3 +79,33 @@ def test_near_circles_of_any_function(function: str) -> None:
     assert found.radial_period == pytest.approx(2.0 * np.pi / frequency, rel=1e-6, abs=0.0)
     assert found.r_max - found.r_min == pytest.approx(2.0 * size, rel=1e-4, abs=0.0)
     assert found.period_error < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("potential", "energy", "momentum", "expected"),
+    [
+        (Custom(lambda r: np.sqrt(1.0 + r * r)), 1.2, 0.1, (0.163649747525196, 0.641051639819978)),
+        (Custom(lambda r: np.sqrt(1e4 + r * r) - 100.0), 1.0, 0.1, (0.0707115620406929, 14.177269659542063)),
+        (Custom(lambda r: r * r / (4.0 + r * r)), 0.5, 0.1, (0.100251575913027, 1.994981108062669)),
+        (
+            [Custom(lambda r: 0.5 * np.log(1.0 + r * r)), Coulomb(-1.0)],
+            0.2,
+            0.5,
+            (0.122127388919097, 1.792329976023923),
+        ),
+        ([Custom(lambda r: 0.2 * np.sin(r) / r), Coulomb(-1.0)], -0.3, 0.5, (0.133962211542551, 3.339962087973768)),
+    ],
+)
+def test_what_cancels_or_leaves_the_range_far_out_is_no_feature(
+    potential: vv.potentials.Potential | list[vv.potentials.Potential],
+    energy: float,
+    momentum: float,
+    expected: tuple[float, float],
+) -> None:
+    """Far out a second derivative like 1/r − r²/r³ is rounding, and (1 + r²)² leaves the range: its signs are no places
+    by which to scale. At the turning points the energy is that of the effective potential."""
+    (found,) = vv.orbits.range_of_motion(potential, energy=energy, angular_momentum=momentum)
+    assert found.kind == "bound"
+    assert (found.r_min, found.r_max) == pytest.approx(expected, rel=1e-12, abs=0.0)
+    at = vv.orbits.effective_potential(potential, [found.r_min, found.r_max], angular_momentum=momentum)
+    np.testing.assert_allclose(at, energy, rtol=0.0, atol=2e-14)

@@ -66,10 +66,15 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 /// Distances that are looked at to each octave, and how many octaves to either side of one.
 const PER_OCTAVE: i32 = 16;
 const OCTAVES: i32 = 400;
+/// Where features are looked for: farther out powers within derivatives leave the range, as (1 + r²)⁴, and change signs.
+const NEARBY: i32 = 64;
 /// Features on either side, the nearest and the farthest, that are taken; of an oscillation there is no end.
 const MOST: usize = 3;
 /// Derivatives beyond that, or beneath its inverse, have not all their digits.
 const LARGE: f64 = 1e280;
+
+/// Beneath this part of the derivative before it, times r, a derivative may be rounding.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
 /// The power of two near the least distance at which a curve is no power of it any more, octave by octave, or, if it is one
 /// everywhere, where it is one; its values alone are asked, whose range is wider than that of derivatives.
@@ -134,11 +139,15 @@ impl Expressed {
         let mut found = Vec::new();
         let mut before = [0.0; 2];
         let mut power: Option<f64> = None;
-        for k in -OCTAVES * PER_OCTAVE..=OCTAVES * PER_OCTAVE {
+        for k in -NEARBY * PER_OCTAVE..=NEARBY * PER_OCTAVE {
             let part = f64::from(k.rem_euclid(PER_OCTAVE)) / f64::from(PER_OCTAVE);
             let r = scale(Exponential::exp(core::f64::consts::LN_2 * part), k.div_euclid(PER_OCTAVE));
-            let [_, slope, second] = r.all_on(&self.curve);
+            let [value, slope, second] = r.all_on(&self.curve);
             let known = |x: f64| x == 0.0 || (LARGE.recip()..LARGE).contains(&x.abs());
+            // What is left of terms that cancel, as of √(1 + r²) far out, has no sign.
+            if (r * slope).abs() <= ROUNDED * value.abs() || (r * second).abs() <= ROUNDED * slope.abs() {
+                continue;
+            }
             if !(known(slope) && known(second)) {
                 before = [0.0; 2];
                 continue;
