@@ -118,6 +118,17 @@ def test_every_event_is_counted_in_its_bin(potential: vv.potentials.Potential, b
 
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=repr)
+def test_a_spot_has_its_head_on_events_behind(potential: vv.potentials.Potential) -> None:
+    """The first draw of a spot is b = 0, whose angle is π, not −π: what begins and ends below an edge would all be."""
+    edges = np.array([0.7, 1.4, np.pi])
+    tally = run(potential, spot=1.2, tally="lab_angle", bins=edges)["lab_angle"]
+    angle = listed(potential, spot=1.2)["lab_angle"]
+    assert tally.counts.tolist() == np.histogram(angle, edges)[0].tolist()
+    assert (tally.underflow, tally.overflow) == ((angle < edges[0]).sum(), 0)
+    assert tally.counts.sum() > 0
+
+
+@pytest.mark.parametrize("potential", POTENTIALS, ids=repr)
 def test_deflections_are_those_of_direct_quadrature_at_each_energy(potential: vv.potentials.Potential) -> None:
     """Certified to 4e-6 in sin²(ψ/2), with the energy of every event its own; and energy is kept to round-off."""
     events = listed(potential, n_events=3000, energy_spread=0.1, divergence=0.1)

@@ -154,7 +154,8 @@ impl Profile {
     }
     /// b²/b_max² within which is that part of the projectiles.
     pub(super) fn share(&self, b_max: f64, part: f64) -> f64 {
-        self.within(b_max).map_or(part, |(half, whole)| (-ln(1.0 - part * whole) / half).min(1.0))
+        // Of the first draw 0, not −0, whose root would be an angle of −π head-on.
+        self.within(b_max).map_or(part, |(half, whole)| (ln(1.0 - part * whole) / half).abs().min(1.0))
     }
     /// The part of the projectiles within that b²/b_max².
     pub(super) fn part(&self, b_max: f64, share: f64) -> f64 {
