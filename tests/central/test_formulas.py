@@ -94,6 +94,7 @@ def test_near_circles_of_any_function(function: str) -> None:
             (0.122127388919097, 1.792329976023923),
         ),
         ([Custom(lambda r: 0.2 * np.sin(r) / r), Coulomb(-1.0)], -0.3, 0.5, (0.133962211542551, 3.339962087973768)),
+        (Custom(lambda r: np.cbrt(1.0 + r * r)), 1.2, 0.1, (0.1616416441903399, 0.8349873570262202)),
     ],
 )
 def test_what_cancels_or_leaves_the_range_far_out_is_no_feature(
@@ -109,3 +110,48 @@ def test_what_cancels_or_leaves_the_range_far_out_is_no_feature(
     assert (found.r_min, found.r_max) == pytest.approx(expected, rel=1e-12, abs=0.0)
     at = vv.orbits.effective_potential(potential, [found.r_min, found.r_max], angular_momentum=momentum)
     np.testing.assert_allclose(at, energy, rtol=0.0, atol=2e-14)
+
+
+@pytest.mark.parametrize(
+    ("potential", "energy", "momentum", "expected"),
+    [
+        # Beside the height to which it rises, so that Newton's steps end in rounding before they end.
+        (
+            Custom(lambda r: 0.025228368098082918 * np.arctan(r * (1.0 / 0.10020258711828287))),
+            0.03960422075769023,
+            0.32487905515826887,
+            ("bound", 28.990514842583803, 74.58357597249886),
+        ),
+        (
+            Custom(lambda r: -0.24369327333160326 * np.exp(-0.014577159623154538 / (1.0 + r))),
+            -0.24262455357449036,
+            0.00105880961032366,
+            ("escapes", 2.316966558828138, np.inf),
+        ),
+        # √(1 + r²) − r = 1/2r far out: roots of E r² ∓ r/2 − l²/2, but for a part of 1e-20.
+        (Custom(lambda r: np.sqrt(1.0 + r * r) - r), 1e-10, 1.0, ("escapes", 5000000001.0, np.inf)),
+        (Custom(lambda r: r - np.sqrt(1.0 + r * r)), -1e-10, 1.0, ("bound", 1.1601162680405868, 4999999999.0)),
+        # ln(1 + r) − ln r.
+        (Custom(lambda r: np.log(1.0 + r) - np.log(r)), 1e-12, 1.0, ("escapes", 1e12, np.inf)),
+        # Hyperbolic functions that leave the range of numbers, and what is large only within.
+        (Custom(lambda r: -4.0 / np.cosh(r) ** 2), 1e-12, 1e-2, ("escapes", 1e-2 / np.sqrt(2e-12), np.inf)),
+        (
+            Custom(lambda r, a: a * np.exp(-(r**2)) - 1.0 / r, parameters={"a": 1e100}),
+            -0.01,
+            0.1,
+            ("bound", 15.26926421097165, 99.994999749975),
+        ),
+        (Custom(lambda r: -1.0 / (1.0 + r**200)), 1e-9, 1.0, ("escapes", 1.0 / np.sqrt(2e-9), np.inf)),
+        (Custom(lambda r: -4.0 / np.sqrt(np.cosh(r))), 1e-9, 1.0, ("escapes", 1.0 / np.sqrt(2e-9), np.inf)),
+        # An exponential that leaves it.
+        (Custom(lambda r: -1.0 / (1.0 + np.exp(r - 5.0))), 1e-12, 1e3, ("escapes", 1e9 / np.sqrt(2.0), np.inf)),
+    ],
+)
+def test_what_is_left_of_near_values_turns_where_it_should(
+    potential: vv.potentials.Potential, energy: float, momentum: float, expected: tuple[str, float, float]
+) -> None:
+    """Far out a formula may be the difference of near numbers: it is told to more digits there, or not at all."""
+    found = vv.orbits.range_of_motion(potential, energy=energy, angular_momentum=momentum)[-1]
+    assert found.kind == expected[0]
+    # A difference of numbers like 5e9 has in thirty digits ten or more left.
+    assert (found.r_min, found.r_max) == pytest.approx(expected[1:], rel=1e-12, abs=0.0)

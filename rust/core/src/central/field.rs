@@ -15,6 +15,8 @@ pub struct Field {
     /// Exponents of its units of length and energy.
     length: i32,
     energy: i32,
+    /// Whether a formula among them has differences of near values, of which numbers keep too few digits.
+    cancels: bool,
 }
 
 impl Field {
@@ -26,7 +28,7 @@ impl Field {
         let energy = potentials.first().map_or(0, |potential| near_one(potential, length).1) & !1;
         let units = Units { length, mass: energy - 2 * length, time: 0 };
         let terms = potentials.iter().map(|potential| potential.scaled(units)).collect();
-        Self { terms, length, energy }
+        Self { terms, length, energy, cancels: false }
     }
 
     /// A length in its units, from one of the caller's.
@@ -61,6 +63,9 @@ impl Field {
 
     /// V(r), in the field's units like everything below.
     pub fn value(&self, r: f64) -> f64 {
+        if self.cancels { self.precise(DoubleDouble::from(r)).0.to_f64() } else { self.rounded(r) }
+    }
+    fn rounded(&self, r: f64) -> f64 {
         self.terms.iter().map(|term| term.at(r)[0]).sum()
     }
     /// V, −dV/dr and d²V/dr²; where V jumps, those between the jumps.
@@ -78,18 +83,64 @@ impl Field {
             if term.jumps() { (v + value, f) } else { (v + value, f + force) }
         })
     }
+    /// V and −dV/dr as numbers.
+    fn value_and_force(&self, r: f64) -> [f64; 2] {
+        if self.cancels {
+            let (value, force) = self.precise(DoubleDouble::from(r));
+            return [value.to_f64(), force.to_f64()];
+        }
+        let [value, force, _] = self.at(r);
+        [value, force]
+    }
     /// The energy U = V + r V′/2 of a circle.
     pub fn circular_energy(&self, r: f64) -> f64 {
-        let [value, force, _] = self.at(r);
+        let [value, force] = self.value_and_force(r);
         value - 0.5 * (r * force)
+    }
+    /// r V′, which is l²/mr² of a circle.
+    pub(super) fn circular_momentum(&self, r: f64) -> f64 {
+        -(r * self.value_and_force(r)[1])
     }
     /// 3 V′ + r V″, which has the sign of dU/dr and of d(r³V′)/dr; zero where rounding hides it.
     pub(super) fn slope(&self, r: f64) -> f64 {
-        let [_, force, curvature] = self.at(r);
-        let (first, second) = (-3.0 * force, r * curvature);
-        let sum = first + second;
-        let size = first.abs() + second.abs();
-        if sum.is_finite() && sum.abs() > HIDDEN * size && size > LEAST { sum / size } else { 0.0 }
+        let (mut sum, mut size, mut hidden) = (DoubleDouble::default(), 0.0, 0.0);
+        let (mut first, mut second) = (0.0, 0.0);
+        for term in self.terms.iter().filter(|term| !term.jumps()) {
+            if let Some([_, (force, force_off), (curvature, curvature_off)]) = term.told(r) {
+                let (first, second) = (force * DoubleDouble::from(-3.0), curvature * DoubleDouble::from(r));
+                sum = sum + first + second;
+                size += first.high().abs() + second.high().abs();
+                hidden += 3.0 * force_off + r * curvature_off;
+            } else {
+                let [_, force, curvature] = term.at(r);
+                first += -3.0 * force;
+                second += r * curvature;
+            }
+        }
+        let rounded = f64::abs(first) + f64::abs(second);
+        let sum = (sum + DoubleDouble::from(first + second)).to_f64();
+        let (size, hidden) = (size + rounded, hidden + HIDDEN * rounded);
+        if sum.is_finite() && sum.abs() > hidden && size > LEAST { sum / size } else { 0.0 }
+    }
+    /// Of places those at which rounding leaves something of V; how much it takes decides how V is found from now on.
+    pub(super) fn known(&mut self, places: &mut Vec<f64>) {
+        let told = |r: f64| -> Option<(DoubleDouble, f64)> {
+            let of = |term: &Arc<dyn Potential>| {
+                term.told(r).map_or_else(|| (DoubleDouble::from(term.at(r)[0]), 0.0), |[value, ..]| value)
+            };
+            self.terms.iter().map(of).reduce(|(sum, all), (value, off)| (sum + value, all + off))
+        };
+        if !self.terms.iter().any(|term| term.hidden().is_some()) {
+            return;
+        }
+        let mut cancels = false;
+        places.retain(|&r| {
+            let Some((value, off)) = told(r) else { return false };
+            let known = off <= KNOWN * value.high().abs() + FAINT;
+            cancels |= known && (value.high() - self.rounded(r)).abs() > CANCELS * value.high().abs() + FAINT;
+            known
+        });
+        self.cancels = cancels;
     }
     /// Where it jumps, ascending.
     pub fn jumps(&self) -> Vec<f64> {
@@ -162,5 +213,11 @@ const PARTS: i32 = 8;
 const OCTAVES: i32 = 400;
 /// A sum of two that is a smaller part of them is rounding.
 const HIDDEN: f64 = 1e-13;
+/// V that is off by less than this part of it is known; and so is one that is off by less than the second, in units in which
+/// energies are near one.
+const KNOWN: f64 = 1e-6;
+const FAINT: f64 = 1e-24;
+/// By so much of it V as a number may be off.
+const CANCELS: f64 = 1e-12;
 /// Below this numbers have not their digits.
 const LEAST: f64 = 1e-280;

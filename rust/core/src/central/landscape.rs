@@ -71,9 +71,15 @@ impl Landscape {
 
     /// Of a sum.
     pub fn of(potentials: &[Arc<dyn Potential>]) -> Self {
-        let field = Field::new(potentials);
+        let mut field = Field::new(potentials);
         let mut places = field.places();
-        places.retain(|&r| field.at(r).iter().zip([1.0, r, r * r]).all(|(x, by)| (x * by).abs() < LARGE));
+        places.retain(|&r| {
+            let [value, force, curvature] = field.at(r);
+            let beyond = |x: f64| x.abs() >= LARGE;
+            // Of a derivative that is no number, as a quotient of what has left the range, the value may be one.
+            value.abs() < LARGE && !beyond(r * force) && !beyond(r * r * curvature)
+        });
+        field.known(&mut places);
         let jumps = field.jumps();
         let mut zones = Vec::new();
         let mut from = 0;
@@ -120,7 +126,7 @@ impl Landscape {
     /// Distances, ascending, of circles with that l²/m = r³V′; repelling forces have none.
     pub fn circular_radii(&self, momentum: DoubleDouble) -> Vec<f64> {
         let momentum = self.field.take_centrifugal(momentum).to_f64();
-        let found = self.crossings(|r| -(r * self.field.at(r)[1]) - momentum / r / r);
+        let found = self.crossings(|r| self.field.circular_momentum(r) - momentum / r / r);
         found.into_iter().flatten().map(|r| self.field.give_length(r)).collect()
     }
 

@@ -66,8 +66,12 @@ pub fn precise(
         if size <= LAST * x.high().abs() {
             return x;
         }
-        let newton = next > a && next < b && size < 0.5 * before;
-        let next = if newton { next } else { (a + b).scale(0.5) };
+        let inside = next > a && next < b;
+        if size >= 0.5 * before && size <= STANDS * x.high().abs() {
+            // Steps as small as the rounding of y do not become smaller.
+            return if inside { next } else { x };
+        }
+        let next = if inside && size < 0.5 * before { next } else { between(a, b) };
         let moved = (next - x).high().abs();
         before = moved;
         x = next;
@@ -78,6 +82,16 @@ pub fn precise(
     x
 }
 
+/// The middle of a bracket, in octaves where it has several.
+fn between(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+    if a.high() > 0.0 && b.high() > 4.0 * a.high() {
+        return DoubleDouble::from(a.high().sqrt() * b.high().sqrt());
+    }
+    (a + b).scale(0.5)
+}
+
+/// What moves less, and not by less than the step before, moves by rounding alone.
+const STANDS: f64 = 1e-20;
 /// Halvings of a double-double, and some.
 const STEPS: usize = 220;
 /// What moves less is there.

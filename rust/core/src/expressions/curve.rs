@@ -51,6 +51,11 @@ impl Curve {
         Ok(Self { all: compile(&graph, (1, 0), &[], &roots.map(Output::Node))?, precise })
     }
 
+    /// All three to about thirty digits, and by how much rounding may have them off.
+    pub fn told(&self, x: DoubleDouble) -> [(DoubleDouble, f64); 3] {
+        <[_; 3]>::try_from(self.precise[2].told(x)).unwrap_or([(DoubleDouble::from(f64::NAN), f64::NAN); 3])
+    }
+
     /// One that is no number anywhere.
     pub fn nowhere() -> Self {
         let all = Code {

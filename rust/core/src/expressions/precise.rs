@@ -12,6 +12,9 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::functions::precise as functions;
 use crate::numerics::real::Real;
+use core::ops::{Add, Div, Mul};
+
+mod rounding;
 
 /// Nodes that are functions of a state and of parameters.
 #[derive(Clone, Debug, Default)]
@@ -63,40 +66,80 @@ impl Precise {
     pub fn at(&self, t: f64, state: &[DoubleDouble], parameters: &[f64]) -> Vec<DoubleDouble> {
         let mut values: Vec<DoubleDouble> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
-            let value = match step {
-                Step::Constant(value) => DoubleDouble::from(*value),
-                Step::Variable(index) => state[*index],
-                Step::Parameter(index) => DoubleDouble::from(parameters[*index]),
-                Step::Time => DoubleDouble::from(t),
-                Step::Sum(constant, terms) => {
-                    terms.iter().fold(DoubleDouble::from(*constant), |sum, (factor, term)| {
-                        sum + DoubleDouble::from(*factor) * values[*term]
-                    })
-                }
-                Step::Product(a, b) => values[*a] * values[*b],
-                Step::Quotient(a, b) => values[*a] / values[*b],
-                Step::Angle(y, x) => {
-                    let (y, x) = (values[*y], values[*x]);
-                    or_rounded(functions::atan2(y, x), || y.high().angle(x.high()))
-                }
-                Step::Call(function, a) => {
-                    let x = values[*a].high();
-                    let program = || x.called(word::CALL + *function as u16);
-                    let rounded = || function.of_constant(x).unwrap_or_else(program);
-                    or_rounded(called(*function, values[*a]), rounded)
-                }
-                Step::Power(a, exponent) => or_rounded(functions::power(values[*a], *exponent), || {
-                    values[*a].high().raised(*exponent)
-                }),
-            };
-            values.push(value);
+            values.push(step.value(&values, t, state, parameters).0);
         }
         self.roots.iter().map(|root| values[*root]).collect()
     }
 }
 
-fn or_rounded(value: DoubleDouble, rounded: impl Fn() -> f64) -> DoubleDouble {
-    if value.is_finite() { value } else { DoubleDouble::from(rounded()) }
+/// Numbers as which steps are taken.
+trait Digits: Copy + Add<Output = Self> + Mul<Output = Self> + Div<Output = Self> + From<f64> {
+    /// What an operation may be off by, against its result.
+    const ROUNDING: f64;
+    /// The number nearest to it.
+    fn rounded(self) -> f64;
+    /// The angle of the point whose y this is, a function, and a power; and whether they have all digits.
+    fn angle(self, x: Self) -> (Self, bool);
+    fn call(self, function: Function) -> (Self, bool);
+    fn raised(self, exponent: f64) -> (Self, bool);
+}
+
+impl Digits for f64 {
+    const ROUNDING: Self = 1e-15;
+    fn rounded(self) -> f64 {
+        self
+    }
+    fn angle(self, x: Self) -> (Self, bool) {
+        (Scalar::angle(self, x), true)
+    }
+    fn call(self, function: Function) -> (Self, bool) {
+        let program = || self.called(word::CALL + function as u16);
+        (function.of_constant(self).unwrap_or_else(program), true)
+    }
+    fn raised(self, exponent: f64) -> (Self, bool) {
+        (Scalar::raised(self, exponent), true)
+    }
+}
+
+impl Digits for DoubleDouble {
+    const ROUNDING: f64 = 1e-30;
+    fn rounded(self) -> f64 {
+        self.high()
+    }
+    fn angle(self, x: Self) -> (Self, bool) {
+        or_rounded(functions::atan2(self, x), || Digits::angle(self.high(), x.high()))
+    }
+    fn call(self, function: Function) -> (Self, bool) {
+        or_rounded(called(function, self), || self.high().call(function))
+    }
+    fn raised(self, exponent: f64) -> (Self, bool) {
+        or_rounded(functions::power(self, exponent), || Digits::raised(self.high(), exponent))
+    }
+}
+
+fn or_rounded(value: DoubleDouble, rounded: impl Fn() -> (f64, bool)) -> (DoubleDouble, bool) {
+    if value.is_finite() { (value, true) } else { (DoubleDouble::from(rounded().0), false) }
+}
+
+impl Step {
+    /// Its value, of those of the steps before it, and whether it has all digits of such numbers.
+    fn value<S: Digits>(&self, values: &[S], t: f64, state: &[S], parameters: &[f64]) -> (S, bool) {
+        let value = match self {
+            Self::Constant(value) => S::from(*value),
+            Self::Variable(index) => state[*index],
+            Self::Parameter(index) => S::from(parameters[*index]),
+            Self::Time => S::from(t),
+            Self::Sum(constant, terms) => terms
+                .iter()
+                .fold(S::from(*constant), |sum, (factor, term)| sum + S::from(*factor) * values[*term]),
+            Self::Product(a, b) => values[*a] * values[*b],
+            Self::Quotient(a, b) => values[*a] / values[*b],
+            Self::Angle(y, x) => return values[*y].angle(values[*x]),
+            Self::Call(function, a) => return values[*a].call(*function),
+            Self::Power(a, exponent) => return values[*a].raised(*exponent),
+        };
+        (value, true)
+    }
 }
 
 fn called(function: Function, x: DoubleDouble) -> DoubleDouble {

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::expressions::curve::{Argument, Curve};
 use crate::expressions::intervals::Intervals;
 use crate::expressions::table::{Parameters, Variables, read};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Mask;
@@ -23,6 +24,8 @@ use std::sync::{Arc, OnceLock};
 pub struct Expressed {
     /// v of lengths in its own unit.
     curve: Arc<Curve>,
+    /// v of lengths in `length`, where that unit is another.
+    plain: Option<Arc<Curve>>,
     /// Its bounds; nothing of what is no number.
     intervals: Option<Arc<Intervals>>,
     /// That unit, a power of two, as a part of `length`.
@@ -73,6 +76,8 @@ const MOST: usize = 3;
 /// Derivatives beyond that, or beneath its inverse, have not all their digits.
 const LARGE: f64 = 1e280;
 
+/// What is off by less than this part of it needs no other unit of length.
+const ENOUGH: f64 = 1e-6;
 /// Beneath this part of the derivative before it, times r, a derivative may be rounding.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
@@ -105,6 +110,18 @@ fn first_bend(curve: &Curve) -> i32 {
 }
 
 impl Expressed {
+    /// What a curve of lengths in such a unit tells of V and its derivatives.
+    fn told_by(&self, curve: &Curve, unit: f64, r: f64) -> [(DoubleDouble, f64); 3] {
+        let per_length = DoubleDouble::from(1.0) / DoubleDouble::from(self.length).scale(unit);
+        let energy = DoubleDouble::from(self.energy);
+        let mut told = curve.told(DoubleDouble::from(r) * per_length);
+        let factors = [energy, -(energy * per_length), energy * per_length * per_length];
+        for ((value, off), factor) in told.iter_mut().zip(factors) {
+            (*value, *off) = (*value * factor, *off * factor.high().abs());
+        }
+        told
+    }
+
     fn read(values: &[Value]) -> Result<Self> {
         let [nodes, parameters, length, energy] = values else {
             return Err(Error::Internal("Expressed takes four parameters".to_owned()));
@@ -120,17 +137,18 @@ impl Expressed {
         let plain = curve(1.0)?;
         let exponent = first_bend(&plain.0);
         let unit = scale(1.0, exponent);
-        let (curve, intervals) = if exponent == 0 { plain } else { curve(unit)? };
+        let (kept, (curve, intervals)) =
+            if exponent == 0 { (None, plain) } else { (Some(Arc::new(plain.0)), curve(unit)?) };
         let made_from = nodes.iter().chain(parameters).map(|x| x.to_bits()).collect();
         let made = Self::of(curve, unit, made_from, [length.number(), energy.number()]);
-        Ok(Self { intervals: Some(Arc::new(intervals)), ..made })
+        Ok(Self { plain: kept, intervals: Some(Arc::new(intervals)), ..made })
     }
 
     fn of(curve: Curve, unit: f64, made_from: Arc<[u64]>, [length, energy]: [f64; 2]) -> Self {
         let [value, slope, second] = 0.0_f64.all_on(&curve);
         let singular = !(value.is_finite() && slope.is_finite() && second.is_finite());
         let (curve, features) = (Arc::new(curve), Arc::default());
-        Self { curve, intervals: None, unit, made_from, length, energy, singular, features }
+        Self { curve, plain: None, intervals: None, unit, made_from, length, energy, singular, features }
     }
 
     /// Where the derivative of v or its second one change their sign, and where it first is no power of r any more. What
@@ -211,7 +229,18 @@ impl Formula for Expressed {
         let lengths = self.features().iter().map(|r| r * self.unit * self.length);
         Some(lengths.filter(|length| *length > 0.0 && length.is_finite()).collect())
     }
-
+    fn told(&self, r: f64) -> Option<[(DoubleDouble, f64); 3]> {
+        let mut told = self.told_by(&self.curve, self.unit, r);
+        let enough = |(value, off): &(DoubleDouble, f64)| *off <= ENOUGH * value.high().abs();
+        if let (Some(plain), false) = (&self.plain, told.iter().all(enough)) {
+            // What leaves the range in one unit of length may stay within it in another.
+            let other = self.told_by(plain, 1.0, r);
+            for (told, other) in told.iter_mut().zip(other).filter(|(told, other)| other.1 < told.1) {
+                *told = other;
+            }
+        }
+        Some(told)
+    }
     fn hidden(&self) -> Option<Hidden> {
         let [per_length, energy, ..] = self.numbers();
         self.intervals.as_ref().map(|intervals| Hidden::new(Intervals::clone(intervals), per_length, energy))

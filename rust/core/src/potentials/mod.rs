@@ -132,6 +132,11 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn hidden(&self) -> Option<Hidden> {
         None
     }
+    /// V(r), −dV/dr and d²V/dr² to about thirty digits, and by how much rounding may have each of them off, if that may be
+    /// all of it.
+    fn told(&self, _r: f64) -> Option<[(DoubleDouble, f64); 3]> {
+        None
+    }
 }
 
 /// A potential energy as the rest of the core holds it.
@@ -179,6 +184,9 @@ pub trait Potential: Debug + Send + Sync {
     fn breaks(&self) -> Vec<f64>;
     /// What samples of it may not show, if it is not known to show all.
     fn hidden(&self) -> Option<Hidden>;
+    /// V(r), −dV/dr and d²V/dr² to about thirty digits, and by how much rounding may have each of them off, if that may be
+    /// all of it: a formula says what it says also where nothing is left of it.
+    fn told(&self, r: f64) -> Option<[(DoubleDouble, f64); 3]>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
     /// Adds the forces between the bodies of each lane's system, partners in order of index.
@@ -316,6 +324,9 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn hidden(&self) -> Option<Hidden> {
         self.formula.hidden()
+    }
+    fn told(&self, r: f64) -> Option<[(DoubleDouble, f64); 3]> {
+        self.formula.told(r)
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);
