@@ -20,6 +20,7 @@ mod pairs;
 mod precise;
 mod profile;
 mod refine;
+mod rim;
 mod search;
 mod spectrum;
 mod trapezoid;

@@ -116,6 +116,13 @@ impl Quadrature<'_> {
             for at in 0..WIDTH.min(energy.len() - from) {
                 let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
+                if let Some(known) = profile.rim().and_then(|rim| rim.deflection(e, b))
+                    && matches!(critical.way(profile, e, b), Way::Turns { .. })
+                {
+                    let turning_points = critical.turning_points(profile, e, b);
+                    found[place] = Deflection { turning_points, ..known };
+                    continue;
+                }
                 let next = turning.places.len();
                 let (head_on, tiny) = self.as_head_on(e);
                 if cells[at] > 0 && b > head_on && e >= simple_from {

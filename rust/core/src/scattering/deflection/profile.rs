@@ -5,6 +5,7 @@
 //! question has one bracketed answer.
 
 use super::grid::{Grid, POINTS, place, radius};
+use super::rim::Rim;
 use super::search::highest;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
@@ -71,6 +72,7 @@ pub(super) struct Profile {
     one_turning_point_from: f64,
     /// V where it ends.
     last_value: f64,
+    rim: Option<Rim>,
     endless_delay: f64,
     power_from: f64,
 }
@@ -115,11 +117,13 @@ impl Profile {
             center: Center::Repulsive,
             one_turning_point_from: 0.0,
             last_value: 0.0,
+            rim: None,
             endless_delay: 0.0,
             power_from: f64::INFINITY,
         };
         if domain[1] < f64::INFINITY {
             made.last_value = made.value(domain[1]);
+            made.rim = Rim::of(made.potential.as_ref());
         }
         made.extrema = made.find_extrema(&between);
         made.center = made.find_center();
@@ -278,6 +282,10 @@ impl Profile {
     pub(super) fn pulling_rim(&self, energy: f64) -> Option<f64> {
         let rim = self.extrema.last().filter(|[r, u]| *r == self.domain[1] && *u >= energy);
         rim.map(|[r, _]| *r)
+    }
+    /// Where it ends, if it still repels there.
+    pub(super) fn rim(&self) -> Option<Rim> {
+        self.rim
     }
     /// Whether V goes to zero far out.
     pub(super) fn vanishes(&self) -> bool {
