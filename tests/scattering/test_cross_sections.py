@@ -124,3 +124,12 @@ def test_heavy_projectiles_are_known_where_both_branches_are() -> None:
     assert narrow.covered[0] == pytest.approx(np.pi / 6.0, rel=1e-14, abs=0)
     assert np.isnan(narrow.cross_section().value[edges[1:] <= np.pi / 6.0]).all()
     assert narrow.counts.sum() == 1_000_000
+
+
+def test_what_is_captured_too_seldom_to_count_refuses_no_mean() -> None:
+    """Of an exp-6 potential what is faster than its barrier falls into the center: 1e-15 of collisions at T = 10."""
+    potential = vv.potentials.Buckingham(1e5, 12.0, 2.0)
+    for temperature in (9.0, 10.0):
+        found = float(vv.scattering.collision_integral(potential, temperature=temperature, diameter=1.0))
+        # On from 0.46489412 at T = 8, where it falls as the power −0.2987 of T.
+        assert found == pytest.approx(0.46489412 * (temperature / 8.0) ** -0.2987, rel=5e-3, abs=0.0)

@@ -42,7 +42,8 @@ pub fn collision_integral(
     let power = f64::from(s + 2);
     let weight = |x: f64| power * x - Exponential::exp(x);
     let mut least = -26.0 / power;
-    let mut most = 3.9;
+    // No further: what is faster may be captured, of which nothing counts.
+    let mut most = ln(power);
     while weight(most) > weight(ln(power)) - NEGLIGIBLE {
         most += 0.1;
     }
