@@ -5,10 +5,14 @@
 //! bisection on the computed function itself, and an event costs a table look-up and an integer
 //! comparison.
 
+mod search;
+
 use crate::numerics::philox::{DRAW_BITS, Draw};
 use crate::parallel::Ticker;
 use crate::words::number;
 use crate::{Error, Result};
+use search::steps_between;
+pub use search::{Seen, Stepping};
 
 /// The most bins of one histogram.
 pub const MOST_BINS: usize = 1 << 16;
@@ -76,6 +80,11 @@ impl Edges {
         let sides = values.map(|value| value - edge);
         let apart = sides.iter().all(|side| side.is_finite()) && (sides[0] < 0.0) != (sides[1] < 0.0);
         apart.then_some(sides)
+    }
+    /// By what part of the edge between two neighboring slots a value is off it.
+    pub(super) fn apart(&self, slots: [usize; 2], value: f64) -> f64 {
+        let edge = self.0.get(slots[0].min(slots[1])).copied().unwrap_or(f64::NAN);
+        if value == edge { 0.0 } else { ((value - edge) / edge).abs() }
     }
     /// The slot of x: 0 below, 1 + bin, or `bins + 1` above.
     pub(super) fn slot(&self, x: f64) -> usize {
@@ -233,86 +242,6 @@ impl Steps {
             slots[*slot] += banks.iter().sum::<u64>();
         }
     }
-}
-
-/// A draw, and what is seen there.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen<V> {
-    /// The draw.
-    pub draw: u64,
-    /// Its slot.
-    pub slot: usize,
-    /// Whatever tells how far it is from another.
-    pub values: V,
-}
-
-/// A function of the draw with steps, of quantities that are continuous.
-pub trait Stepping {
-    /// What is known of a draw besides its slot.
-    type Values: Copy;
-    /// At a draw.
-    fn seen(&self, draw: u64) -> Seen<Self::Values>;
-    /// Two numbers of different signs, between which the only step between two draws is where the quantity would be zero; if
-    /// there is but one.
-    fn sides(&self, low: &Seen<Self::Values>, high: &Seen<Self::Values>) -> Option<[f64; 2]>;
-}
-
-/// How far a guess is moved inward from where a line is zero, so that both ends of a bracket come nearer.
-const INWARD: f64 = 0.2;
-
-/// Adds every draw in `from + 1..=to` whose slot differs from that of the draw before. The slot is that of monotone
-/// quantities, so where both ends agree there is no step; where they differ by one, it is guessed by a line, and in no case
-/// are there many more evaluations than halvings.
-/// Source: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5.
-fn steps_between<F: Stepping>(
-    [from, to]: [u64; 2],
-    function: &F,
-    steps: &mut Vec<u64>,
-    ticker: &mut Ticker<'_>,
-) -> Result<()> {
-    let mut pending = vec![(function.seen(from), function.seen(to))];
-    while let Some((mut low, mut high)) = pending.pop() {
-        ticker.tick()?;
-        if low.slot == high.slot {
-            continue;
-        }
-        let first = (high.draw - low.draw) as f64;
-        // What the bracket must not be longer than: twice that of halvings.
-        let mut longest = 2.0 * first;
-        loop {
-            let width = high.draw - low.draw;
-            if width == 1 {
-                steps.push(high.draw);
-                break;
-            }
-            longest *= 0.5;
-            let sides = function.sides(&low, &high);
-            let part = sides.map_or(width / 2, |sides| guess(width, sides, [first, longest]));
-            let middle = function.seen(low.draw + part.clamp(1, width - 1));
-            if middle.slot == low.slot {
-                low = middle;
-            } else if middle.slot == high.slot {
-                high = middle;
-            } else {
-                pending.push((low, middle));
-                pending.push((middle, high));
-                break;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Where in a bracket to look next: where a line is zero, moved inward, and so near to the middle that what is left is no
-/// longer than it may be.
-fn guess(width: u64, [low, high]: [f64; 2], [first, longest]: [f64; 2]) -> u64 {
-    let width = width as f64;
-    let half = 0.5 * width;
-    let line = width * (low / (low - high));
-    let inward = (INWARD * width * (width / first)).min((half - line).abs());
-    let moved = line + inward.copysign(half - line);
-    let around = (longest - half).max(0.0);
-    (moved.clamp(half - around, half + around)).round() as u64
 }
 
 #[cfg(test)]

@@ -16,6 +16,9 @@ impl<F: Fn(u64) -> f64> Stepping for Binned<'_, F> {
     fn sides(&self, low: &Seen<f64>, high: &Seen<f64>) -> Option<[f64; 2]> {
         self.0.sides([low.slot, high.slot], [low.values, high.values])
     }
+    fn apart(&self, [low, high]: [&Seen<f64>; 2], of: &Seen<f64>) -> f64 {
+        self.0.apart([low.slot, high.slot], of.values)
+    }
 }
 
 fn steps(edges: &Edges, turning: &[u64], value: impl Fn(u64) -> f64) -> Steps {
@@ -105,5 +108,23 @@ proptest! {
                 prop_assert_eq!(slot_of(&steps, edges.bins(), draw), edges.slot(value(draw)));
             }
         }
+    }
+}
+
+/// A quantity that comes to an edge and stays there but for its last bit, as rounding has it.
+#[test]
+fn what_flickers_at_an_edge_is_counted_as_it_is() {
+    let edges = Edges::new("bins", vec![0.0, 1.0, 2.0]).unwrap();
+    let last = 1 << DRAW_BITS;
+    let value = |draw: u64| match draw as f64 / last as f64 {
+        part if part < 0.5 => part,
+        // Below the edge in every other hundredth until 0.6, then on it.
+        part if part < 0.6 && ((part * 100.0) as u64).is_multiple_of(2) => 1.0_f64.next_down(),
+        _ => 1.0,
+    };
+    let steps = steps(&edges, &[], value);
+    for part in 0..1000 {
+        let draw = last / 1000 * part + 12_345;
+        assert_eq!(slot_of(&steps, 2, draw), edges.slot(value(draw)), "{part}");
     }
 }

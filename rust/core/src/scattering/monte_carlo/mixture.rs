@@ -259,4 +259,12 @@ impl Stepping for OfDraw<'_> {
         // Of two quantities that step one after the other halving tells which is which.
         if apart.next().is_some() { None } else { edges.sides([a.0, b.0], [a.1, b.1]) }
     }
+    fn apart(&self, [low, high]: [&Seen<Self::Values>; 2], of: &Seen<Self::Values>) -> f64 {
+        let axes = self.tally.axes.iter().enumerate();
+        let off = |(axis, (_, edges)): (usize, &(Quantity, Edges))| {
+            let slots = [low.values[axis].0, high.values[axis].0];
+            (slots[0] != slots[1]).then(|| edges.apart(slots, of.values[axis].1))
+        };
+        axes.filter_map(off).fold(f64::INFINITY, f64::min)
+    }
 }
