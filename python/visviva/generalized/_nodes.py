@@ -55,6 +55,8 @@ _NUMPY = {
 _MADE_OF = {
     "cbrt": "_cbrt",
     "exp2": "_exp2",
+    "expm1": "_expm1",
+    "log1p": "_log1p",
     "log2": "_log2",
     "log10": "_log10",
     "deg2rad": "_radians",
@@ -62,7 +64,9 @@ _MADE_OF = {
     "rad2deg": "_degrees",
     "degrees": "_degrees",
 }
-_KNOWN = ", ".join((*FUNCTIONS, "cbrt", "exp2", "log2", "log10", "deg2rad", "rad2deg", "hypot", "arctan2"))
+_KNOWN = ", ".join(
+    (*FUNCTIONS, "cbrt", "exp2", "expm1", "log1p", "log2", "log10", "deg2rad", "rad2deg", "hypot", "arctan2")
+)
 
 
 class Nodes:
@@ -233,6 +237,14 @@ class Expression:
 
     def _exp2(self) -> Expression:
         return (self * log(2.0))._with("exp")
+
+    # Both by identities in which nothing cancels: tanh(x/2) (e^x + 1), and sinh(log(1 + x)) = (x/2) (1 + 1/(1 + x)).
+
+    def _expm1(self) -> Expression:
+        return (0.5 * self)._with("tanh") * (self._with("exp") + 1.0)
+
+    def _log1p(self) -> Expression:
+        return (0.5 * self * (1.0 + 1.0 / (1.0 + self)))._with("asinh")
 
     def _log2(self) -> Expression:
         return self._with("log") / log(2.0)
