@@ -199,13 +199,10 @@ class PlanRequest:
         if prepared["rigid"] is not None and self.record is _RECORDED:
             asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
         if self.rtol != _RTOL and asked["method"] in fixed_steps():
-            otherwise = "name an adaptive method such as verner98"
-            if prepared["rigid"] is not None:  # those that torques turn take none
-                otherwise = "leave method and dt out, and rtol chooses the steps"
             raise InvalidInput(
                 "rtol",
                 f"{asked['method']} has a fixed step, dt, which nothing else changes: expected none, got {self.rtol}; "
-                f"leave rtol out and choose dt, or {otherwise}",
+                f"leave rtol out and choose dt, or name an adaptive method such as verner98",
             )
         if asked["events"]:
             from visviva._event_descriptions import with_body_indices

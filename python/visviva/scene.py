@@ -96,8 +96,7 @@ class Scene(Runnable[Trajectory], Framed):
     -----
     Whatever acts on particles acts on the centers of mass of rigid bodies; gravity turns those that are no spheres, too
     (MacCullagh's terms). Bodies that nothing turns move in closed form in their orientation, whatever moves their
-    centers. All others go in equal steps: ``run(t, dt=…)`` takes kahan_li8, or rk4 where something looks at velocities;
-    `visviva.rigid.methods` has the others.
+    centers. All others take the methods of `visviva.rigid.methods`, with equal steps or with steps that they choose.
 
     Raises
     ------

@@ -81,6 +81,45 @@ def test_two_zeros_in_one_step_are_found(method: str, depth: float) -> None:
             np.testing.assert_allclose(found.mean(), apart.t[0], rtol=0.0, atol=3e-6)
 
 
+@pytest.mark.parametrize("method", ["kahan_li8", "stormer13", "blanes_moan_rkn6_14", "verner98"])
+def test_a_shallow_approach_within_a_step_is_found_wherever_it_is(method: str) -> None:
+    """Two bodies in a well: d² = a² cos² + b² sin², below r² for a sixth of a step of 0.3, wherever in that step.
+
+    Where the cubics through its ends pass zero between other samples than the motion does, the way in was lost."""
+    step, a, b = 0.3, 4.0, 1.4
+    below = b * 1.004
+    # d² = r² at a distance x from the quarter of the turn with (a² − b²) sin² x = r² − b².
+    half = np.arcsin(np.sqrt((below**2 - b**2) / (a**2 - b**2)))
+    for shift in np.linspace(0.0, step, 61, endpoint=False):
+        # The quarter of the turn comes when 7 steps and that part of one have passed.
+        phase = 0.5 * np.pi - (7.0 * step + shift)
+        c, si = np.cos(phase), np.sin(phase)
+        places = [[0.5 * a * c, 0.5 * b * si, 0.0], [-0.5 * a * c, -0.5 * b * si, 0.0]]
+        speeds = [[-0.5 * a * si, 0.5 * b * c, 0.0], [0.5 * a * si, -0.5 * b * c, 0.0]]
+        scene = vv.Scene(vv.Particles([1.0, 1.0], places, speeds), vv.Harmonic(1.0))
+        asked = {} if method == "verner98" else {"dt": step}
+        out = scene.run(t=3.6, method=method, events=[events.distance(0, 1, below=below, direction=0)], **asked)
+        # Of errors of 21 steps in a turn, up to 1e-7 of the distance, where that falls with a slope of 0.3.
+        np.testing.assert_allclose(out.events.t, 7.0 * step + shift + np.array([-half, half]), rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("direction", [0, 1, -1])
+def test_a_greatest_distance_is_passed_once_each_way(direction: int) -> None:
+    """d² = a² cos² + b² sin² grazes what is 1e-4 short of a: twice in half a turn, and never twice at a time."""
+    a, b, graze = 4.0, 1.4, 1.0 - 1e-4
+    half = np.arcsin(np.sqrt((a**2 - (graze * a) ** 2) / (a**2 - b**2)))
+    for phase in np.linspace(0.3, 2.8, 41):
+        c, si = np.cos(phase), np.sin(phase)
+        places = [[0.5 * a * c, 0.5 * b * si, 0.0], [-0.5 * a * c, -0.5 * b * si, 0.0]]
+        speeds = [[-0.5 * a * si, 0.5 * b * c, 0.0], [0.5 * a * si, -0.5 * b * c, 0.0]]
+        scene = vv.Scene(vv.Particles([1.0, 1.0], places, speeds), vv.Harmonic(1.0))
+        event = events.distance(0, 1, below=graze * a, direction=direction)
+        found = scene.run(t=3.0, method="kahan_li8", dt=0.1, events=[event]).events.t
+        exact = np.array([np.pi - phase - half, np.pi - phase + half])
+        wanted = {0: exact, 1: exact[:1], -1: exact[1:]}[direction]
+        np.testing.assert_allclose(found, wanted[(wanted > 0) & (wanted < 3.0)], rtol=0.0, atol=1e-6)
+
+
 def test_a_fly_by_on_one_long_step_is_found() -> None:
     """Two bodies on which nothing acts: an adaptive step is as long as the run."""
     scene = vv.Scene(vv.Particles([1.0, 1.0], [[0, 0, 0], [-700.0, 0.5, 0]], [[0, 0, 0], [1.0, 0, 0]]))

@@ -63,6 +63,33 @@ def test_a_light_body_on_a_long_ellipse(method: str, heavy: float) -> None:
         scene.run(t=100.0, method="taylor")
 
 
+@pytest.mark.parametrize("method", ["leapfrog", "rk4", "stormer13"])
+@pytest.mark.parametrize(("mass", "planet"), [(0.0, None), (0.0, 1e-2), (1e-12, 1e-4)])
+def test_a_comet_that_some_six_steps_throw_out(method: str, mass: float, planet: float | None) -> None:
+    """At e = 0.99 what a method loses at the pericenter is two hundred times as much of the energy: 6.3 steps in a turn
+    there had it hundreds of axes away."""
+    several = planet is not None
+    bodies = vv.Particles.from_elements(
+        1.0,
+        [mass, planet] if several else [mass],
+        G=1.0,
+        semi_major_axis=[1.0, 3.2] if several else [1.0],
+        eccentricity=[0.99, 0.05] if several else [0.99],
+        true_anomaly=[2.5, 1.0] if several else [2.5],
+    )
+    scene = vv.Scene(bodies, vv.Gravity(1.0))
+    with pytest.warns(
+        vv.AccuracyWarning, match="a turn of body 1 about body 0, as tight as at its pericenter, has 6.28"
+    ):
+        scene.run(t=31.4, method=method, dt=1e-3)
+    if not several:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            out = scene.run(t=31.4, method=method, dt=1e-4)
+        # Five passages in 63 steps to a turn there, each of which may take a fifth of the energy.
+        assert np.linalg.norm(out.position[-1, 1] - out.position[-1, 0]) < 3.0
+
+
 def test_a_moon_that_is_lost_is_told() -> None:
     """The Sun pulls our Moon twice as hard as the Earth does, about which it goes: equal steps threw it out."""
     G = 6.674e-11

@@ -114,6 +114,22 @@ impl<S: Controlled> EmbeddedStep<S> {
         self.combined(norm.sizes(state, &self.next, elapsed, &changes))
     }
 
+    /// As [`polynomial`](Trial::polynomial), of a coordinate and its velocity in a state of the first order.
+    fn polynomial_of_rates(&self, numbers: [usize; 2], h: S, into: &mut Vec<[S; 2]>) {
+        let (len, [_, basis]) = (self.stages.len(), &self.between().weights);
+        let rate = |stage: usize, number: usize| self.stages.k[stage * len + number];
+        for term in 0..self.terms() {
+            // What is left of the way when the velocity has had its part.
+            let mut sums = [if term == 0 { -rate(0, numbers[0]) } else { S::zero() }, S::zero()];
+            for (stage, weights) in basis.iter().enumerate() {
+                for (sum, number) in sums.iter_mut().zip(numbers) {
+                    *sum = weights[term].multiply_add(rate(stage, number), *sum);
+                }
+            }
+            into.push([sums[0] / h, sums[1]]);
+        }
+    }
+
     /// Where the derivative at the end, which no estimate weighs, is another than that of the last stage, which is at the end
     /// too: a stiff force that begins within the step has thrown the stages back to where it is not.
     fn misses_its_end(&self, state: &State<S>, elapsed: &S, h: S, norm: &Norm<S>) -> S::Mask {
@@ -262,6 +278,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         let end_stage = self.end_stage();
         self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
+        system.settle(&mut self.next);
         if self.end_in_estimate {
             self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
         }
@@ -304,7 +321,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     fn at(
         &mut self,
         outcome: &Settled<S>,
-        _: &mut dyn System<S>,
+        system: &mut dyn System<S>,
         state: &State<S>,
         theta: S,
         into: &mut State<S>,
@@ -313,6 +330,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let Self { method, stages, between, weights, .. } = self;
         between.get_or_init(|| Between::new(method, stages.form())).weigh(theta, weights);
         stages.state_at(weights, state, &outcome.h, into);
+        system.settle(into);
         Ok(())
     }
 
@@ -345,8 +363,12 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         }
     }
 
-    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
+    fn polynomial(&self, coordinate: usize, h: S, into: &mut Vec<[S; 2]>) {
         let from = into.len();
+        if matches!(self.stages.form(), Form::FirstOrder(_)) {
+            self.polynomial_of_rates([coordinate, self.next.q().len() + coordinate], h, into);
+            return;
+        }
         into.resize(from + self.terms(), [S::zero(); 2]);
         let (basis, k, stride) = (&self.between().weights, &self.stages.k[..], self.stages.len());
         S::pass(Coordinate { coordinate, basis, k, stride, into: &mut into[from..] });

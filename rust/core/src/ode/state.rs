@@ -9,26 +9,35 @@ use crate::numerics::element::{Element, PairMut};
 pub struct State<S> {
     y: Vec<S>,
     compensation: Vec<S>,
-    /// How many of the first numbers are coordinates, whose velocities follow; 0 of a system of the first order.
+    /// How many of the first numbers are coordinates, which velocities or momenta follow; 0 if nothing tells them apart.
     coordinates: usize,
+    /// Whether those are the derivatives of the coordinates.
+    second_order: bool,
 }
 
 impl<S: Element> State<S> {
     /// Of a system of the second order, from coordinates and velocities.
     pub fn new(q: &[S], v: &[S]) -> Self {
-        Self { coordinates: q.len(), ..Self::first_order(q.iter().chain(v).copied().collect()) }
+        Self {
+            coordinates: q.len(),
+            second_order: true,
+            ..Self::first_order(q.iter().chain(v).copied().collect())
+        }
     }
     /// Of a system of the first order.
     pub fn first_order(y: Vec<S>) -> Self {
-        Self { compensation: vec![S::zero(); y.len()], y, coordinates: 0 }
+        Self { compensation: vec![S::zero(); y.len()], y, coordinates: 0, second_order: false }
+    }
+    /// The same numbers as those of a system of the first order, some of whose coordinates have other derivatives than what
+    /// follows them.
+    #[must_use]
+    pub fn into_first_order(self) -> Self {
+        Self { second_order: false, ..self }
     }
     /// The form of the equations that it is a state of.
     #[inline]
     pub fn form(&self) -> Form {
-        match self.coordinates {
-            0 => Form::FirstOrder(self.y.len()),
-            coordinates => Form::SecondOrder(coordinates),
-        }
+        if self.second_order { Form::SecondOrder(self.coordinates) } else { Form::FirstOrder(self.y.len()) }
     }
     /// Coordinates.
     #[inline]

@@ -182,6 +182,12 @@ pub trait System<S: Element>: Send {
         None
     }
 
+    /// Takes a state to which a step or a polynomial has led to where states of the system are, if its numbers are bound to
+    /// each other, as those of a quaternion.
+    fn settle(&self, state: &mut State<S>) {
+        let _ = state;
+    }
+
     /// Turns velocities exactly as what rotates them does in the time `h`.
     fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
         let _ = (h, v);

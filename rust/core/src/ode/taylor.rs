@@ -345,7 +345,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         }
     }
 
-    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
+    fn polynomial(&self, coordinate: usize, _: S, into: &mut Vec<[S; 2]>) {
         let (terms, unit) = (self.terms(), S::one() / self.jet.unit);
         // A coordinate moves by its velocity besides, and both are in units of the step.
         let mut of_q = self.monomials(&self.jet.q, (2, terms), coordinate, unit * unit);

@@ -103,10 +103,10 @@ pub trait Trial<S: Controlled>: Send {
     }
 
     /// Of a system of the second order: the terms of the accelerations' weighted sums in one coordinate (times h²) and in its
-    /// velocity (times h), in the basis of [`extension`](Self::extension). The coordinate moves by `θh` times its velocity,
-    /// besides.
-    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
-        let _ = (coordinate, into);
+    /// velocity (times h, the step), in the basis of [`extension`](Self::extension). The coordinate moves by `θh` times its
+    /// velocity, besides.
+    fn polynomial(&self, coordinate: usize, h: S, into: &mut Vec<[S; 2]>) {
+        let _ = (coordinate, h, into);
     }
 
     /// The Taylor coefficients of the step tried last, if the method is made of them.

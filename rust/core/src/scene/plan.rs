@@ -6,6 +6,7 @@ mod explain;
 mod kinds;
 mod own;
 mod parts;
+mod passage;
 mod quiet;
 mod refusals;
 mod series;
@@ -149,7 +150,8 @@ impl Plan {
         scene.validate()?;
         ticker.tick()?;
         let with_step = with_method(scene, request);
-        let tolerance = with_step.as_ref().filter(|_| request.dt.is_none()).map(|request| request.rtol);
+        let in_parts = |with_step: &&Request| request.dt.is_none() && with_step.dt.is_some();
+        let tolerance = with_step.as_ref().filter(in_parts).map(|request| request.rtol);
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
@@ -161,14 +163,11 @@ impl Plan {
             return Err(Error::invalid("collisions", message));
         }
         if turning.steps() {
-            turning::check(scene, request, method, automatic, &forces)?;
+            turning::check(scene, request, method, &forces)?;
         }
         // Spheres may touch whichever they are: all of them are on one step.
         let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
-        let ties = scene.rigid.iter().flat_map(|bodies| {
-            bodies.loads.iter().filter_map(|load| load.pair(scene.particles, bodies.count))
-        });
-        let groups = if touching { Groups::All } else { Groups::of(scene.particles, &forces, ties) };
+        let groups = if touching { Groups::All } else { turning::groups(scene, &forces) };
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
             Groups::Listed(groups) => {

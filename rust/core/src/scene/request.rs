@@ -253,12 +253,7 @@ impl Request {
         for (argument, given) in [("atol", atol), ("max_step", self.max_step.map(number))] {
             match given {
                 Some(given) if !method.adaptive() => {
-                    // Those that torques turn take no adaptive method and no time transformation.
-                    let otherwise = if scene.rigid.is_some() {
-                        "leave method and dt out, too, and rtol chooses the steps"
-                    } else {
-                        "name an adaptive method such as verner98"
-                    };
+                    // Those that torques turn take no time transformation.
                     let transforms = if method.symplectic && scene.rigid.is_none() {
                         "; a symplectic method whose steps are chosen from one to the next is no symplectic map, and \
                          its energy drifts: what keeps it where steps must change is time_transformation="
@@ -267,7 +262,7 @@ impl Request {
                     };
                     let message = format!(
                         "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
-                         out and choose dt, or {otherwise}{transforms}",
+                         out and choose dt, or name an adaptive method such as verner98{transforms}",
                         method.name, given
                     );
                     return Err(Error::invalid(argument, message));

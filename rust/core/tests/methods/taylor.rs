@@ -97,7 +97,7 @@ fn the_extension_is_the_series_in_every_basis_and_ends_where_the_step_does() {
             let by_blocks = q + nested(&mut blocks.chunks(len).map(|block| block[number]), theta);
             assert!((by_blocks - at_q).to_f64().abs() < 1e-29);
             let mut terms = Vec::new();
-            trial.polynomial(number, &mut terms);
+            trial.polynomial(number, outcome.h, &mut terms);
             let h = outcome.h;
             let of_q = nested(&mut terms.iter().map(|term| term[0]), theta);
             let of_v = nested(&mut terms.iter().map(|term| term[1]), theta);

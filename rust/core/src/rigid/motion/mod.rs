@@ -9,6 +9,7 @@ pub mod loads;
 pub mod methods;
 pub mod runge_kutta;
 pub mod splitting;
+pub mod system;
 pub mod turn;
 pub mod vectors;
 

@@ -342,11 +342,30 @@ pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 
         (to[c], rounded) = two_sum(q[c], increment);
         left[c] = rounded + low;
     }
+    (to, drawn(to, left))
+}
+
+/// A quaternion at length 1, with what it leaves out.
+#[inline(always)]
+pub fn of_length_one<S: Real>(q: [S; 4], rest: [S; 4]) -> ([S; 4], [S; 4]) {
+    let square = q[0].multiply_add(q[0], q[1] * q[1]) + q[2].multiply_add(q[2], q[3] * q[3]);
+    let inverse = S::one() / square.sqrt();
+    let (mut to, mut left) = (q, rest);
+    for c in 0..4 {
+        to[c] = q[c] * inverse;
+        left[c] = rest[c] * inverse;
+    }
+    (to, drawn(to, left))
+}
+
+/// What a nearly unit quaternion leaves out, so that both have length 1.
+#[inline(always)]
+fn drawn<S: Real>(to: [S; 4], mut left: [S; 4]) -> [S; 4] {
     let missing = S::splat(0.5) * short_of_one(to, left);
     for c in 0..4 {
         left[c] = to[c].multiply_add(missing, left[c]);
     }
-    (to, left)
+    left
 }
 
 /// 1 − |q + rest|² of nearly unit quaternions, to the digits of the rest: what is left of a rounded sum of squares would be as

@@ -32,6 +32,7 @@ use crate::ode::transformed::Transformed;
 use crate::ode::trial::{Cost, Trial, trial};
 use crate::ode::{Embedded, Scheme};
 use crate::parallel::Ticker;
+use crate::rigid::motion::system::BodySystem;
 use core::iter::Enumerate;
 use core::slice;
 use followers::{Followers, Span};
@@ -56,7 +57,7 @@ pub(super) fn run(
     let elapsed = |&t: &f64| scale(t - job.scene.t0, -job.plan.units.time);
     let outputs: Arc<[f64]> = job.times.iter().map(elapsed).collect();
     let first = job.prepare(&units[0], ticker)?;
-    let own = Forces::Own(unit::dynamics(job.plan, &[&first], threads));
+    let own = Forces::own(job, &[&first], threads);
     let mut run = Run::new(job, first, own, &outputs)?;
     run.waiting = units.iter().enumerate();
     run.threads = threads;
@@ -106,14 +107,29 @@ struct Slot<'a> {
 enum Forces {
     /// Forces among themselves and from outside.
     Own(Dynamics<Lanes>),
+    /// Those, and what turns rigid bodies beside them.
+    Turning(Box<BodySystem>),
     /// Forces from outside and from massive bodies that move along a path.
     Along(Guided),
 }
 
 impl Forces {
+    /// Those of units in the lanes that follow nobody.
+    fn own(job: &Job<'_>, units: &[&Prepared], threads: usize) -> Self {
+        let dynamics = unit::dynamics(job.plan, units, threads);
+        match unit::assembled(job.plan, job.scene, units) {
+            Some(assembly) => {
+                let state = units[0].blank_state(1);
+                Self::Turning(Box::new(BodySystem::new(Box::new(dynamics), assembly, &state)))
+            }
+            None => Self::Own(dynamics),
+        }
+    }
+
     fn system(&mut self) -> &mut dyn System<Lanes> {
         match self {
             Self::Own(dynamics) => dynamics,
+            Self::Turning(bodies) => &mut **bodies,
             Self::Along(guided) => guided,
         }
     }
@@ -157,6 +173,9 @@ impl<'a> Run<'a> {
         let plan = job.plan;
         let layout = plan.layout_of(&first.unit);
         let mut state = first.blank_state(1);
+        if matches!(forces, Forces::Turning(_)) {
+            state = state.into_first_order();
+        }
         for lane in 0..layout.units() {
             first.write(&mut state, lane);
         }
@@ -182,7 +201,7 @@ impl<'a> Run<'a> {
             fractions: stages_of(&plan.method.scheme),
             cost: trial.cost(),
             trial,
-            norm: Norm::new(first.state_shape(1), system.form(), Lanes::splat(job.rtol), together),
+            norm: measure::norm(first.state_shape(1), &mut forces, Lanes::splat(job.rtol), together),
             forces,
             between: state.clone(),
             outputs: Arc::clone(outputs),
@@ -344,11 +363,14 @@ impl<'a> Run<'a> {
         match &mut self.forces {
             // The first unit of all, in all lanes, has those with which the run was made.
             Forces::Own(_) if self.layout == Layout::Packed && index == Some(0) => {}
-            Forces::Own(dynamics) => *dynamics = unit::dynamics(self.job.plan, &units, self.threads),
             Forces::Along(guided) => guided.take_up(self.job.plan, &units),
+            own => *own = Forces::own(self.job, &units, self.threads),
         }
         self.clock.restart(fresh, self.part.length);
         let Self { trial, state, clock, forces, norm, .. } = self;
+        if let Forces::Turning(bodies) = forces {
+            measure::set_momenta(norm, bodies, (state, clock), fresh, ticker)?;
+        }
         trial.start(fresh, forces.system(), state, clock, norm, ticker)
     }
 }

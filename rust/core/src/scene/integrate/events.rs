@@ -101,6 +101,8 @@ pub(super) struct Watch<'a> {
     suspects: Vec<usize>,
     /// The terms of each coordinate of each body on that step.
     terms: Vec<[f64; 2]>,
+    /// Whether states within a step are settled, so that bodies are not quite where the polynomials have them.
+    settles: bool,
     /// How well the inside of a step is known.
     known: Known,
     /// When each event was zero last, or nearly so at the start; before all time if it never was.
@@ -169,6 +171,7 @@ impl<'a> Watch<'a> {
             next: vec![Sight::default(); events.len()],
             suspects: Vec::new(),
             terms: Vec::new(),
+            settles: plan.turning.steps(),
             known: job.known(),
             last: vec![-plan.direction * f64::INFINITY; events.len()],
             counts: vec![0; events.len()],

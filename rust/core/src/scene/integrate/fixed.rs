@@ -59,7 +59,7 @@ fn lockstep(
     let dt = plan.dt.unwrap_or(plan.direction);
     let shape = dynamics.shape;
     // A special kernel holds the masses of its group.
-    let rigid = unit::assembled(plan, job.scene, &prepared);
+    let rigid = unit::assembled(plan, job.scene, &views);
     let own = plan.relative || rigid.is_some();
     if own || room.as_ref().is_none_or(|(other, ..)| *other != shape) {
         let state = prepared[0].blank_state(units.len());

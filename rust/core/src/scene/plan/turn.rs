@@ -2,6 +2,7 @@
 //! changes most on the way; the turns of charges in magnetic fields; and steps that are too long for them.
 
 use super::super::{Scene, distance};
+use super::passage;
 use crate::forces::ForceTerm;
 use crate::ode::{FEWEST_STEPS, Method, Scheme};
 use core::f64::consts::TAU;
@@ -9,6 +10,9 @@ use std::sync::Arc;
 
 /// Bodies with at most this part of the mass that they are about change energies by less than anybody looks at.
 const LIGHT: f64 = 1e-3;
+
+/// So many orbits are looked at as they pass their pericenters, the most suspicious first.
+const PASSAGES: usize = 8;
 
 /// To look at so many pairs takes less than a hundredth of a run of so many steps for each.
 const PAIRS: usize = 4_096;
@@ -113,7 +117,7 @@ impl TooLong {
 pub(super) fn too_long(
     scene: &Scene,
     forces: &[Arc<dyn ForceTerm>],
-    method: &Method,
+    method: &'static Method,
     (dt, span): (Option<f64>, f64),
     touching: bool,
 ) -> Option<TooLong> {
@@ -152,7 +156,7 @@ fn gyration_too_long(scene: &Scene, method: &Method, dt: f64) -> Option<TooLong>
 fn orbit_too_long(
     scene: &Scene,
     forces: &[Arc<dyn ForceTerm>],
-    method: &Method,
+    method: &'static Method,
     (dt, span): (f64, f64),
     touching: bool,
 ) -> Option<TooLong> {
@@ -168,6 +172,7 @@ fn orbit_too_long(
     }
     let fewest = method.fewest_steps();
     let mut worst: Option<TooLong> = None;
+    let mut passages = Vec::new();
     for copy in 0..scene.copies {
         let own = if scene.own_forces.is_some() { newtonian(scene.forces_of(copy)) } else { told };
         let Some((constant, softening)) = own else { continue };
@@ -177,21 +182,36 @@ fn orbit_too_long(
             let other = of_moon.filter(|moon| of_planet.is_none_or(|planet| planet.about != moon.about));
             [of_planet, other].into_iter().flatten().map(move |turn| (body, turn))
         });
-        for (body, Turn { about, pericenter, period, at_pericenter, .. }) in orbits {
+        for (body, Turn { about, eccentricity, pericenter, period, at_pericenter }) in orbits {
             if pericenter < SOFT * softening {
                 continue;
             }
             // What is wrong at the pericenter of a heavier one the energy tells; where spheres touch, none may come there.
             let light = !touching && scene.masses(copy)[body] <= LIGHT * scene.masses(copy)[about];
+            // Of less than a turn nothing is said.
+            if period > span {
+                continue;
+            }
             let turns = [(period, fewest, false), (at_pericenter, FEWEST_STEPS, true)];
             for (turn, fewest, at_pericenter) in turns.into_iter().take(if light { 2 } else { 1 }) {
                 let steps = turn / dt;
-                // Of less than a turn nothing is said.
-                if steps < fewest && period <= span && worst.is_none_or(|worst| steps < worst.steps) {
+                if steps < fewest && worst.is_none_or(|worst| steps < worst.steps) {
                     worst = Some(TooLong { copy, body, about: Some(about), steps, fewest, at_pericenter });
                 }
             }
+            let steps = at_pericenter / dt;
+            if let Some(suspicion) = passage::suspicion(method, eccentricity, steps).filter(|_| light) {
+                let passing = TooLong { copy, body, about: Some(about), steps, fewest, at_pericenter: true };
+                passages.push((suspicion, (eccentricity, span / period), passing));
+            }
         }
     }
-    worst
+    if worst.is_some() {
+        return worst;
+    }
+    passages.sort_by(|(one, ..), (other, ..)| other.total_cmp(one));
+    passages.into_iter().take(PASSAGES).find_map(|(_, (eccentricity, times), passing)| {
+        let fewest = passage::fewest_steps(method, eccentricity, passing.steps, times)?;
+        Some(TooLong { fewest, ..passing })
+    })
 }

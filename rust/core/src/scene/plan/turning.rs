@@ -2,7 +2,7 @@
 
 use super::super::Scene;
 use super::super::request::Request;
-use super::Plan;
+use super::{Groups, Plan};
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::{Method, Scheme};
@@ -50,7 +50,7 @@ impl Turning {
 /// Whether a method can step bodies that turn under forces of which some look at velocities, or none does.
 const fn serves(method: &Method, velocities: bool) -> bool {
     match method.scheme {
-        Scheme::RungeKutta(_) => true,
+        Scheme::RungeKutta(_) | Scheme::Embedded(_) => true,
         Scheme::Splitting(_) | Scheme::NystromSplitting(_) => !velocities,
         _ => false,
     }
@@ -74,25 +74,58 @@ const fn best(velocities: bool) -> &'static str {
     if velocities { "rk4" } else { "kahan_li8" }
 }
 
+/// Whether some points move by themselves, beside bodies: in parts of a run nothing is refined but what is with a body.
+fn points_apart(scene: &Scene, bodies: &RigidBodies, forces: &[Arc<dyn ForceTerm>]) -> bool {
+    let points = scene.particles - bodies.count;
+    match groups(scene, forces) {
+        Groups::All => false,
+        Groups::Single => points > 0,
+        Groups::Listed(groups) => (0..points).any(|point| {
+            let group = groups.iter().find(|group| group.binary_search(&point).is_ok());
+            group.is_none_or(|group| group.iter().all(|&body| body < points))
+        }),
+    }
+}
+
+/// What forces and springs on bodies make depend on each other.
+pub(super) fn groups(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> Groups {
+    let ties = scene
+        .rigid
+        .iter()
+        .flat_map(|bodies| bodies.loads.iter().filter_map(|load| load.pair(scene.particles, bodies.count)));
+    Groups::of(scene.particles, forces, ties)
+}
+
 /// Into how many parts a run is cut whose steps are chosen.
 pub(super) const PARTS: u32 = 64;
 
+/// What chooses its steps for them, where events are looked for on the way, something looks at velocities, or the steps
+/// are steered.
+const ADAPTIVE: &str = "verner98";
+
 /// The request with the method that bodies that turn are stepped with, where it leaves the method open; if it names no step
-/// either, with the length of a part. Between the ends of long parts nobody sees events.
+/// either, with the length of a part, or none for a method that chooses its own: between the ends of long parts nobody sees
+/// events.
 pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
     let bodies = scene.rigid.as_ref()?;
     if request.method != "auto" {
         return None;
     }
-    let chosen =
-        request.events.is_empty() && request.time_transformation.is_none() && request.max_step.is_none();
     let span = (request.times.last()? - scene.t0).abs();
     let part = if span > 0.0 { span / f64::from(PARTS) } else { 1.0 };
-    let dt = request.dt.or(chosen.then_some(part))?;
     let forces = super::own::acting(scene, &scene.forces);
-    let method = best(looking(bodies, &forces).is_some());
+    let velocities = looking(bodies, &forces).is_some();
+    let steered = request.max_step.is_some() || request.atol.is_some();
+    let in_parts =
+        request.events.is_empty() && !steered && !velocities && !points_apart(scene, bodies, &forces);
+    let (method, dt) = match request.dt {
+        None if request.time_transformation.is_some() => return None,
+        None if !in_parts => (ADAPTIVE, None),
+        None => (best(velocities), Some(part)),
+        given => (best(velocities), given),
+    };
     let stepped = Turning::of(scene, registry::method(method)?, &forces).steps();
-    stepped.then(|| Request { method: method.to_owned(), dt: Some(dt), ..request.clone() })
+    stepped.then(|| Request { method: method.to_owned(), dt, ..request.clone() })
 }
 
 /// Refuses what bodies that turn cannot be run with.
@@ -103,38 +136,32 @@ pub(super) fn check(
     scene: &Scene,
     request: &Request,
     method: &Method,
-    automatic: bool,
     forces: &[Arc<dyn ForceTerm>],
 ) -> Result<()> {
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let looking = looking(bodies, forces);
-    if automatic {
-        let best = best(looking.is_some());
-        let message = format!(
-            "bodies that torques turn are moved in equal steps, whose length is found by trial only without events, max_step \
-             and time_transformation: expected a step, such as dt={} (of {best}, which is then taken), got None",
-            suggested_step(bodies)
-        );
-        return Err(Error::invalid("dt", message));
-    }
-    if !serves(method, looking.is_some()) {
-        let names = registry::methods_for(true)
-            .filter(|method| serves(method, looking.is_some()))
-            .map(|method| method.name);
-        let best = best(looking.is_some());
-        let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
-        let message = format!(
-            "bodies that torques turn are moved in equal steps: {why}expected one of {}, with dt (such as {best} with \
-             dt={}), got {}",
-            names.collect::<Vec<_>>().join(", "),
-            suggested_step(bodies),
-            request.method
-        );
-        return Err(Error::invalid("method", message));
-    }
     if request.time_transformation.is_some() {
         let message = "expected None for rigid bodies that torques turn";
         return Err(Error::invalid("time_transformation", message));
+    }
+    if !serves(method, looking.is_some()) {
+        let of = |adaptive: bool| {
+            let names = registry::methods_for(true)
+                .filter(|method| serves(method, looking.is_some()) && method.adaptive() == adaptive)
+                .map(|method| method.name);
+            names.collect::<Vec<_>>().join(", ")
+        };
+        let why = looking.map_or_else(String::new, |name| format!("; {name} looks at velocities"));
+        let message = format!(
+            "got {}, which moves no bodies that torques turn{why}: expected one of those that choose their steps, {}, \
+             or one with a step (such as {} with dt={}), {}",
+            request.method,
+            of(true),
+            best(looking.is_some()),
+            suggested_step(bodies),
+            of(false)
+        );
+        return Err(Error::invalid("method", message));
     }
     let softened =
         forces.iter().any(|force| force.as_newtonian().is_some_and(|(_, softening)| softening != 0.0));
@@ -167,6 +194,7 @@ impl Plan {
             Turning::Stepped(free) => {
                 let how = match (&self.method.scheme, free) {
                     (Scheme::RungeKutta(_), _) => "Runge–Kutta on the group of rotations",
+                    (Scheme::Embedded(_), _) => "quaternions and momenta beside the points",
                     (_, Free::Exact) => "exact free turns between kicks",
                     (_, Free::Discrete(_)) => "discrete free turns between kicks",
                 };

@@ -99,8 +99,12 @@ fn put(part: &Part<'_>, report: &Report, reached: &mut Reached) {
         reached.position[particle] = position;
         reached.velocity[particle] = velocity;
     }
-    let rigid = report.unit.bodies.iter().filter_map(|&body| part.plan.rigid_place(body));
-    for (&(orientation, spin), place) in report.turned.iter().zip(rigid) {
+    let bodies = report.unit.bodies.iter().enumerate();
+    let rigid = bodies.filter_map(|(slot, &body)| Some((slot, part.plan.rigid_place(body)?)));
+    let recorded = |slot: &usize| report.unit.recorded.contains(slot);
+    for (&(orientation, spin), (_, place)) in
+        report.turned.iter().zip(rigid).filter(|(_, (slot, _))| recorded(slot))
+    {
         let body = part.member(report.unit.copy) * part.plan.rigid + place;
         reached.orientation[body] = orientation;
         reached.angular_velocity[body] = spin;

@@ -52,11 +52,13 @@ impl Prepared {
     /// Lays the rigid bodies into a state.
     pub(super) fn write_turning(&self, state: &mut State<Lanes>, unit_lane: usize) {
         let numbers = state.q().len();
-        let ((q, _), (v, _)) = state.halves_mut();
+        let ((q, q_rest), (v, v_rest)) = state.halves_mut();
         for (place, start) in self.starts.iter().enumerate() {
             let (at, lane) = self.turning_at(place, numbers, unit_lane);
             for c in 0..4 {
                 q[at + c].0[lane] = start.orientation[c];
+                // Another unit may have been there.
+                (q_rest[at + c].0[lane], v_rest[at + c].0[lane]) = (0.0, 0.0);
             }
             for c in 0..3 {
                 v[at + c].0[lane] = start.momentum[c];
@@ -165,7 +167,7 @@ impl Prepared {
         (0..self.starts.len()).map(|place| self.read_turning(bodies, place, state, unit_lane)).collect()
     }
 
-    /// Records them; `false` if they are no longer finite.
+    /// Records those that are recorded from this unit; `false` if some are no longer finite.
     pub(super) fn record_turning(
         &self,
         scene: &Scene,
@@ -174,11 +176,15 @@ impl Prepared {
         unit_lane: usize,
     ) -> bool {
         let Some(bodies) = &scene.rigid else { return true };
+        let points = scene.particles - bodies.count;
+        let slots = self.unit.bodies.iter().enumerate().filter(|(_, body)| **body >= points);
         let mut finite = true;
-        for (place, start) in self.starts.iter().enumerate() {
+        for (place, (start, (slot, _))) in self.starts.iter().zip(slots).enumerate() {
             let turned = self.read_turning(bodies, place, state, unit_lane);
             finite &= turned.0.iter().chain(&turned.1).all(|x| x.is_finite());
-            output.write_turned(start.at % bodies.count, turned);
+            if self.unit.recorded.contains(&slot) {
+                output.write_turned(start.at % bodies.count, turned);
+            }
         }
         finite
     }
@@ -188,13 +194,13 @@ impl Prepared {
 pub(in crate::scene) fn assembled(
     plan: &Plan,
     scene: &Scene,
-    units: &[Prepared],
+    units: &[&Prepared],
 ) -> Option<(Arrangement, Loads)> {
     let Turning::Stepped(free) = plan.turning else { return None };
     let bodies = scene.rigid.as_ref().filter(|_| !units[0].starts.is_empty())?;
-    let first = &units[0];
+    let first = units[0];
     // Copies may have forces of their own.
-    let constant = |unit: &Prepared| {
+    let constant = |unit: &&Prepared| {
         let constants = plan.forces_of(unit.unit.copy).iter().filter_map(|force| force.as_newtonian());
         constants.map(|(constant, _)| constant).sum()
     };

@@ -42,7 +42,7 @@ impl<'a> Run<'a> {
         } else if outcome.stuck.lane(lane) {
             let massive = match &mut self.forces {
                 Forces::Along(guided) => guided.places(self.clock.elapsed.0[lane], lane),
-                Forces::Own(_) => Vec::new(),
+                Forces::Own(_) | Forces::Turning(_) => Vec::new(),
             };
             stuck::why(self.job, &slot.unit, &self.state, (lane, elapsed), &massive)
         } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {

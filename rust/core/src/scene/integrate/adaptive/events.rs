@@ -55,7 +55,7 @@ impl Interpolant for Inside<'_> {
         let known = self.terms.iter().position(|(other, _)| *other == coordinate);
         let index = known.unwrap_or_else(|| {
             let mut terms = Vec::new();
-            self.trial.polynomial(coordinate, &mut terms);
+            self.trial.polynomial(coordinate, self.outcome.h, &mut terms);
             self.terms.push((coordinate, terms));
             self.terms.len() - 1
         });

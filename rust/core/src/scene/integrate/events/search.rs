@@ -27,6 +27,9 @@ const POLISHES: usize = 3;
 /// of its way: not by enough to turn.
 const BEND: f64 = 0.0625;
 
+/// Zeros to the same side that are nearer than this part of a step are one.
+const ONE_ZERO: f64 = 1e-6;
+
 /// A part of a step at whose ends a function has different signs.
 pub(super) type Bracket = [(f64, f64); 2];
 
@@ -44,6 +47,13 @@ pub(super) struct Search<'s, 'a> {
 /// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
 fn crosses(start: f64, end: f64) -> bool {
     (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
+}
+
+/// The points beside those at the ends of a bracket.
+fn around(points: &[(f64, f64)], [(from, _), (to, _)]: Bracket) -> [f64; 2] {
+    let before = points.iter().rev().find(|point| point.0 < from).map_or(0.0, |point| point.0);
+    let after = points.iter().find(|point| point.0 > to).map_or(1.0, |point| point.0);
+    [before, after]
 }
 
 impl Search<'_, '_> {
@@ -130,28 +140,42 @@ impl Search<'_, '_> {
         // Windows overlap: one turn may be found from two of them.
         brackets.sort_by(|[(a, _), _], [(b, _), _]| a.total_cmp(b));
         brackets.dedup_by(|later, before| later[0].0 < before[1].0);
-        let mut zeros = Vec::new();
         if let (true, &[bracket]) = (self.watch.terms.is_empty(), &brackets[..])
             && crosses(self.ends[0], self.ends[1])
         {
-            if counts(self.ends[0]) {
-                let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
-                let slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
-                zeros.push(self.one_zero(theta, slope, step, ticker)?);
+            if !counts(self.ends[0]) {
+                return Ok(Vec::new());
             }
-            return Ok(zeros);
+            let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
+            let slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
+            return Ok(vec![self.one_zero(theta, slope, step, ticker)?]);
         }
+        let mut zeros = Vec::new();
+        let mut told = Vec::new();
+        let mut looked_up_to = 0.0;
         for bracket in brackets {
-            let Some([a, b]) = self.settled(bracket, step, ticker)? else { continue };
+            match self.settled(bracket, step, ticker)? {
+                Some(settled) => told.push(settled),
+                // It has passed zero a little sooner or later, or come near it and turned.
+                None if end.is_some() && bracket[0].0 >= looked_up_to => {
+                    let around = around(&points, bracket);
+                    looked_up_to = around[1];
+                    told.extend(self.dip(around, step, ticker)?);
+                }
+                None => {}
+            }
+        }
+        for [a, b] in told {
             if counts(a.1) {
                 let theta = zero([a, b], |theta| self.value_at(theta, step, ticker))?;
-                zeros.push(self.polished(theta, [a.0, b.0], step, ticker)?);
+                zeros.push((self.polished(theta, [a.0, b.0], step, ticker)?, a.1 < 0.0));
             }
         }
         // Brackets that the solution does not confirm lead to one zero.
-        zeros.sort_by(f64::total_cmp);
-        zeros.dedup();
-        Ok(zeros)
+        zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Between two zeros to one side there is one to the other, which is not this near.
+        zeros.dedup_by(|later, before| later.1 == before.1 && later.0 - before.0 <= ONE_ZERO);
+        Ok(zeros.into_iter().map(|(theta, _)| theta).collect())
     }
 
     /// Where the step is sampled.
@@ -270,6 +294,23 @@ impl Search<'_, '_> {
         Ok(Vec::new())
     }
 
+    /// Where the solution passes zero about a place where the cubic does, but not between the same points.
+    fn dip(
+        &mut self,
+        ends: [f64; 2],
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<Bracket>> {
+        let mut told = [(0.0, self.ends[0]), (1.0, self.ends[1])];
+        for (told, theta) in told.iter_mut().zip(ends) {
+            if theta != told.0 {
+                *told = (theta, self.value_at(theta, step, ticker)?);
+            }
+        }
+        let [a, b] = told;
+        if crosses(a.1, b.1) { Ok(vec![told]) } else { self.nearest(a, b, step, ticker) }
+    }
+
     /// The length of the step.
     fn length(&self) -> f64 {
         scale(self.span.to - self.span.from, self.watch.job.plan.units.time)
@@ -340,7 +381,7 @@ impl Search<'_, '_> {
     }
 
     fn sight_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Sight> {
-        if self.watch.terms.is_empty() {
+        if self.watch.terms.is_empty() || self.watch.settles {
             let state = step.at(theta, ticker)?;
             self.watch.bodies.read(state, &mut self.watch.inside);
             self.sight_inside(theta, ticker)
