@@ -103,6 +103,22 @@ def test_a_shallow_approach_within_a_step_is_found_wherever_it_is(method: str) -
         np.testing.assert_allclose(out.events.t, 7.0 * step + shift + np.array([-half, half]), rtol=0.0, atol=1e-6)
 
 
+@pytest.mark.parametrize(("method", "step"), [("kahan_li8", 0.1), ("kahan_li8", 0.25), ("stormer13", 0.08)])
+def test_a_plane_that_is_grazed_is_passed_twice(method: str, step: float) -> None:
+    """x = cos(t + φ) beyond 0.9999 for 0.028, somewhere within a step: one of the two ways was lost."""
+    half = np.arccos(0.9999)
+    plane = events.plane([0.9999, 0.0, 0.0], [1.0, 0.0, 0.0])
+    for phase in np.linspace(0.5, 6.0, 45):
+        start = vv.Particles(
+            [1.0], [[np.cos(phase), 0.3 * np.sin(phase), 0.0]], [[-np.sin(phase), 0.3 * np.cos(phase), 0.0]]
+        )
+        found = vv.Scene(start, vv.Harmonic(1.0)).run(t=18.0, method=method, dt=step, events=[plane]).events.t
+        middles = 2.0 * np.pi * np.arange(1, 4) - phase
+        exact = np.sort(np.concatenate([middles - half, middles + half]))
+        # A slope of 0.014, and of 25 steps in a turn 1e-9 after three of them.
+        np.testing.assert_allclose(found, exact[(exact > 0.0) & (exact < 18.0)], rtol=0.0, atol=2e-5)
+
+
 @pytest.mark.parametrize("direction", [0, 1, -1])
 def test_a_greatest_distance_is_passed_once_each_way(direction: int) -> None:
     """d² = a² cos² + b² sin² grazes what is 1e-4 short of a: twice in half a turn, and never twice at a time."""

@@ -157,7 +157,7 @@ impl Search<'_, '_> {
             match self.settled(bracket, step, ticker)? {
                 Some(settled) => told.push(settled),
                 // It has passed zero a little sooner or later, or come near it and turned.
-                None if end.is_some() && bracket[0].0 >= looked_up_to => {
+                None if bracket[0].0 >= looked_up_to => {
                     let around = around(&points, bracket);
                     looked_up_to = around[1];
                     told.extend(self.dip(around, step, ticker)?);
