@@ -191,6 +191,64 @@ def test_a_copy_that_takes_the_place_of_another_begins_anew() -> None:
         assert np.array_equal(alone.orientation, together.orientation[i]), i
 
 
+def test_events_of_a_copy_are_those_that_it_has_alone() -> None:
+    spins = np.array([[[0.0, 150.0 * (1 + i / 3), -4.6]] for i in range(11)])
+    copies = top().ensemble(angular_velocity=spins)
+    asked: dict[str, Any] = {"t": 1.5, "events": [vv.events.plane([0.0, 0.0, -0.3], [0.0, 0.0, 1.0])]}
+    together = copies.run(threads=3, **asked).events
+    for i in range(11):
+        alone = copies[i].run(**asked).events
+        of_copy = together.member == i
+        assert np.array_equal(together.t[of_copy], alone.t), i
+        assert np.array_equal(together.position[of_copy], alone.position), i
+        assert len(alone.t) > 0
+
+
+@pytest.mark.parametrize("method", ["verner98", "kahan_li8"])
+@pytest.mark.parametrize("softening", [0.0, 0.3])
+@pytest.mark.parametrize("count", [6, 7, 8, 9, 15])
+def test_any_number_of_bodies_pull_beside_one_that_is_turned(method: str, softening: float, count: int) -> None:
+    """More than eight massive ones were not pulled at all: a ball is a point, so its scene is that of points."""
+    angle = 2.4 * np.arange(count)
+    axis = np.linspace(3.0, 9.0, count)
+    places = np.column_stack([axis * np.cos(angle), axis * np.sin(angle), 0.1 * axis])
+    speeds = np.column_stack([-np.sin(angle), np.cos(angle), 0.0 * angle]) / np.sqrt(axis)[:, None]
+    # The last is massless.
+    mass = np.append(np.full(count - 1, 1e-2), 0.0)
+    ball = vv.RigidBody(1.0, [0.1, 0.1, 0.1], angular_velocity=[0.3, 0.2, 1.0])
+    forces = (vv.Gravity(1.0, softening), vv.AppliedTorque([0.0, 0.0, 1e-9]))
+    asked: dict[str, Any] = {"rtol": 1e-12} if method == "verner98" else {"dt": 0.05}
+    found = vv.Scene(vv.Particles(mass, places, speeds), ball, *forces).run(t=4.0, method=method, **asked)
+    points = vv.Particles([1.0, *mass], [[0.0] * 3, *places], [[0.0] * 3, *speeds])
+    exact = vv.Scene(points, forces[0]).run(t=4.0, method="dop853", rtol=1e-13).position[-1]
+    # Of tolerances of 1e-12 and of order 8 in steps of a hundredth of the shortest turn.
+    np.testing.assert_allclose(found.position[-1], [*exact[1:], exact[0]], rtol=0.0, atol=1e-9)
+
+
+def test_a_crowd_with_masses_of_its_own_in_each_copy() -> None:
+    """Nine planets, 200 massless bodies and a middle that is no sphere: each copy as alone, and as in small steps."""
+    random = np.random.default_rng(5)
+    turn = 2.0 * np.pi * random.random(209)
+    axis = np.concatenate([np.linspace(3.0, 9.0, 9), 4.0 + 8.0 * random.random(200)])
+    places = np.column_stack([axis * np.cos(turn), axis * np.sin(turn), 0.1 * random.random(209)])
+    speeds = np.column_stack([-np.sin(turn), np.cos(turn), np.zeros(209)]) / np.sqrt(axis)[:, None]
+    bodies = vv.Particles(np.concatenate([np.full(9, 1e-3), np.zeros(200)]), places, speeds)
+    middle = vv.RigidBody(1.0, [0.1, 0.15, 0.2], angular_velocity=[0.3, 0.2, 1.0])
+    scene = vv.Scene(bodies, middle, vv.Gravity(1.0))
+    # A rigid body keeps its own.
+    masses = np.column_stack([bodies.mass * (1.0 + 0.5 * np.arange(3))[:, None], np.ones(3)])
+    copies = scene.ensemble(mass=masses)
+    together = copies.run(t=1.0, method="verner98", rtol=1e-11, threads=3)
+    for i in range(3):
+        alone = copies[i].run(t=1.0, method="verner98", rtol=1e-11, threads=1)
+        small = copies[i].run(t=1.0, method="kahan_li8", dt=0.0025)
+        for name in ("position", "orientation", "angular_velocity"):
+            found = getattr(alone, name)
+            assert np.array_equal(found, getattr(together, name)[i]), name
+            # Of a tolerance of 1e-11 of each step, in distances of ten.
+            assert np.abs(found - getattr(small, name)).max() < 1e-8, name
+
+
 def test_what_looks_at_velocities_takes_it_by_itself() -> None:
     body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
     scene = vv.Scene(body, vv.RotationalDrag(0.1), vv.AppliedTorque([1.0, 0.0, 0.0]))

@@ -220,7 +220,7 @@ fn select_kernel<S: InverseCube, const MANY: bool>(systems: &Systems<'_, S>, a: 
                     ($bodies, true, false) => select!($bodies, true, false),
                     ($bodies, true, true) => select!($bodies, true, true),
                 )+
-                // More than RING_MAX bodies never come here.
+                // More than RING_MAX bodies have a kernel of their own (`many`).
                 _ => {}
             }
         };

@@ -16,6 +16,7 @@ pub(super) mod beside;
 pub mod closed;
 pub mod energy;
 pub mod few;
+mod many;
 pub mod newton;
 mod pair;
 pub mod passive;
@@ -26,6 +27,7 @@ pub mod tiles;
 pub mod two_rows;
 
 pub use few::FewBodies;
+pub(super) use many::ManyBodies;
 pub use ring::Ring;
 pub use tiles::Tiles;
 pub use two_rows::TwoRows;

@@ -1,7 +1,7 @@
 //! Newton's law between all pairs: what a scene describes.
 
 use super::passive::Leading;
-use super::{FewBodies, RING_MAX, Ring, Tiles, TwoRows, energy, series};
+use super::{FewBodies, ManyBodies, RING_MAX, Ring, Tiles, TwoRows, energy, series};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
@@ -93,7 +93,8 @@ pub fn attraction(
 ) -> Box<dyn Force<Lanes>> {
     let (shape, active) = (context.shape, context.active);
     if context.arrangement == Arrangement::Batched {
-        return Box::new(few(context, strength, softening));
+        let bodies = few(context, strength, softening);
+        return if active <= RING_MAX { Box::new(bodies) } else { Box::new(ManyBodies(bodies)) };
     }
     let softening = context.units.take(softening, [1, 0, 0]);
     let system = context.first();
