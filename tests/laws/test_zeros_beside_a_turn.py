@@ -5,6 +5,8 @@ x = cos t: it passes 1 - d twice in every period, √(2d) before and after its m
 Bounds: a zero beside a turn is found to the error of the function over its slope, √(2d): ten times what it is off by.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,41 @@ def test_in_a_magnetic_field_by_its_closed_form() -> None:
     run = scene.run(200.0, rtol=1e-12, events=[vv.events.plane([0.0, -2.0 + 1e-6, 0.0], [0.0, 1.0, 0.0])])
     expected = 2 * len([k for k in range(40) if np.pi + 2.0 * np.pi * k < 199.9])
     assert len(run.events) == expected
+
+
+PHASES = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+NARROW = 0.4  # Half the smaller axis of an ellipse x = cos t, y = 0.4 sin t.
+
+
+def equal_steps(event: vv.events.Event | Callable[..., float], phase: float, method: str, dt: float) -> np.ndarray:
+    """When two bodies opposite each other on halves of the ellipse have the event, from this phase on to t = 6."""
+    place = np.array([np.cos(phase), NARROW * np.sin(phase), 0.0])
+    speed = np.array([-np.sin(phase), NARROW * np.cos(phase), 0.0])
+    bodies = vv.Particles([1.0, 1.0], [0.5 * place, -0.5 * place], [0.5 * speed, -0.5 * speed])
+    return np.array(vv.Scene(bodies, vv.Harmonic(1.0)).run(6.0, method=method, dt=dt, events=[event]).events.t)
+
+
+# A node of the samples of a step falls between both zeros, or just beside them, at one phase or another; the cubic
+# through the ends of a step of 0.25 is 1e-5 off, ten times as much as x = -0.99999 is short of the turn.
+@pytest.mark.parametrize("d", [1e-4, 1e-5])
+@pytest.mark.parametrize("kind", ["plane", "greatest", "least", "function"])
+@pytest.mark.parametrize(("method", "dt"), [("kahan_li8", 0.25), ("stormer13", 0.08)])
+def test_both_zeros_within_one_equal_step(kind: str, d: float, method: str, dt: float) -> None:
+    least, period = NARROW * (1.0 + d), np.pi
+    half = np.arccos(np.sqrt((least**2 - NARROW**2) / (1.0 - NARROW**2)))
+    event: vv.events.Event | Callable[..., float]
+    if kind == "plane":
+        event, half, period = vv.events.plane([0.5 * (d - 1.0), 0, 0], [1, 0, 0]), np.arccos(d - 1.0), 2.0 * np.pi
+    elif kind == "greatest":
+        event = vv.events.distance(0, 1, below=1.0 - d, direction=0)
+        half = np.arcsin(np.sqrt((1.0 - (1.0 - d) ** 2) / (1.0 - NARROW**2)))
+    elif kind == "least":
+        event = vv.events.distance(0, 1, below=least, direction=0)
+    else:
+        event = lambda t, x, v: ((x[0] - x[1]) ** 2).sum() - least**2  # noqa: E731
+    for phase in PHASES[:: 8 if kind == "function" else 1]:
+        turns = period * np.arange(-3, 5) - phase
+        expected = np.sort(np.concatenate([turns - half, turns + half]))
+        expected = expected[(expected > 0.0) & (expected < 6.0)]
+        # Both methods are within 1e-11 of the place in a turn; beside it the function has a slope of √d or more.
+        np.testing.assert_allclose(equal_steps(event, phase, method, dt), expected, rtol=0.0, atol=1e-8)

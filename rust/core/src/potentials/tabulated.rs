@@ -61,7 +61,7 @@ fn check(r: &[f64], v: &[f64]) -> Result<()> {
             format!("expected ascending distances, got r[{at}] = {here} and then r[{}] = {next}", at + 1);
         return Err(Error::invalid("r", message));
     }
-    let pieces = pieces(r, v);
+    let pieces = pieces(r, v, |_| false);
     match pieces.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
         None => Ok(()),
         Some(at) => Err(Error::invalid(
@@ -74,8 +74,9 @@ fn check(r: &[f64], v: &[f64]) -> Result<()> {
     }
 }
 
-/// Origin, inverse of the length and coefficients of each interval, and of the last point.
-pub(crate) fn pieces(r: &[f64], v: &[f64]) -> Vec<[f64; 8]> {
+/// Origin, inverse of the length and coefficients of each interval, and of the last point. Intervals are told from their
+/// beginning, or where `from_end` says so from their end, backwards: near there their values have all their digits.
+pub(crate) fn pieces(r: &[f64], v: &[f64], from_end: impl Fn(usize) -> bool) -> Vec<[f64; 8]> {
     // In units near one, as fifth powers and differences of fourth order are taken.
     let largest = |values: &[f64]| exponent(values.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let (length, energy) = (largest(r), largest(v));
@@ -86,13 +87,15 @@ pub(crate) fn pieces(r: &[f64], v: &[f64]) -> Vec<[f64; 8]> {
     let row = |i: usize| {
         // From the last point on there is nothing, but the point has its own value.
         let h = if i < last { places[i + 1] - places[i] } else { places[i] - places[i - 1] };
-        let c = if i < last {
-            quintic(h, [v[i], v[i + 1]], bends[i], bends[i + 1])
+        let (origin, h, c) = if i == last {
+            (r[i], h, [v[i], h * bends[i][0], 0.5 * h * h * bends[i][1], 0.0, 0.0, 0.0])
+        } else if from_end(i) {
+            (r[i + 1], -h, quintic(-h, [v[i + 1], v[i]], bends[i + 1], bends[i]))
         } else {
-            [v[i], h * bends[i][0], 0.5 * h * h * bends[i][1], 0.0, 0.0, 0.0]
+            (r[i], h, quintic(h, [v[i], v[i + 1]], bends[i], bends[i + 1]))
         };
         let [a, b, c, d, e, f] = c.map(|c| scale(c, energy));
-        [r[i], scale(1.0 / h, -length), a, b, c, d, e, f]
+        [origin, scale(1.0 / h, -length), a, b, c, d, e, f]
     };
     (0..=last).map(row).collect()
 }
@@ -104,7 +107,8 @@ impl Formula for Tabulated {
     fn new(values: &[Value]) -> Self {
         let (r, v) = (values[0].table(), values[1].table());
         let last = r.last().copied().unwrap_or_default();
-        Self { curve: Piecewise::new(r.to_vec(), last, pieces(r, v)) }
+        let lower_end = |i: usize| v[i + 1].abs() < v[i].abs();
+        Self { curve: Piecewise::new(r.to_vec(), last, pieces(r, v, lower_end)) }
     }
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())

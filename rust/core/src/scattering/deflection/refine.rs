@@ -8,6 +8,7 @@ use super::profile::Profile;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::real::Mask;
 use crate::tiered;
+use core::ops::Range;
 
 /// Steps at most; halving alone ends after sixty.
 const MOST_STEPS: usize = 200;
@@ -19,6 +20,9 @@ const TOGETHER: usize = 4;
 const BENT: f64 = 64.0;
 /// … and done is what leaves less than this part of r.
 const LEFT: f64 = 1.0 / (1_u64 << 55) as f64;
+/// Beside breaks of V, over which what the step began with tells nothing of what is beyond, the last step is no longer than this
+/// part of r.
+const OVER_BREAKS: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Rows of pairs, and what is found of them: the turning points, and V, −dV/dr and d²V/dr² there.
 #[derive(Debug, Default)]
@@ -92,6 +96,7 @@ impl Turned {
     /// Finds them.
     pub(super) fn refine(&mut self, profile: &Profile) {
         start_tier(self);
+        let longest = if profile.breaks().is_empty() { 1.0 } else { OVER_BREAKS };
         let rows = self.r.len();
         for from in (0..rows).step_by(TOGETHER) {
             let range = from..rows.min(from + TOGETHER);
@@ -106,7 +111,8 @@ impl Turned {
                 if !self.going[range.clone()].iter().any(|going| going.any()) {
                     break;
                 }
-                improve_tier(self, range.start, range.end, step >= SOON && step % 3 > 0);
+                let halve = step >= SOON && step % 3 > 0;
+                improve_tier(self, range.clone(), halve, longest);
             }
         }
         scale_tier(self);
@@ -151,11 +157,12 @@ fn start<V: Vector8>(turned: &mut Turned) {
     }
 }
 
-/// One step of the lanes that are not done; a halving of their brackets if that is asked for.
+/// One step of the lanes that are not done; a halving of their brackets if that is asked for. The last one is no longer than
+/// that part of r.
 #[inline(always)]
-fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize, halve: bool) {
+fn improve<V: Vector8>(turned: &mut Turned, rows: Range<usize>, halve: bool, longest: f64) {
     let (zero, one, half) = (V::zero(), V::one(), V::splat(0.5));
-    for row in from..to {
+    for row in rows {
         let (energy, b, at) = (V::load(turned.energy[row]), V::load(turned.b[row]), V::load(turned.r[row]));
         let pull = at * V::load(turned.force[row]);
         let (rest, slope, share) = rest(energy, b, at, V::load(turned.value[row]), pull);
@@ -174,7 +181,7 @@ fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize, halve: bool)
         let step = (next - at).abs();
         let part = step / at;
         let left = part * (bent * bent + V::splat(BENT) * part * part);
-        let done = inside.and(left.less_equal(V::splat(LEFT)));
+        let done = inside.and(left.less_equal(V::splat(LEFT))).and(part.less_equal(V::splat(longest)));
         let zeroed = rest.less_equal(zero).and(beyond);
         let moves = going.and(zeroed.not());
         turned.r[row] = V::select(moves, next, at).store();
@@ -208,5 +215,5 @@ fn scale<V: Vector8>(turned: &mut Turned) {
 tiered! {
     fn scale_tier[][](turned: &mut Turned) = scale;
     fn start_tier[][](turned: &mut Turned) = start;
-    fn improve_tier[][](turned: &mut Turned, from: usize, to: usize, halve: bool) = improve;
+    fn improve_tier[][](turned: &mut Turned, rows: Range<usize>, halve: bool, longest: f64) = improve;
 }

@@ -157,13 +157,22 @@ impl Event {
         Sight { value, distance, velocity }
     }
 
+    /// The rate of its value, where it follows from what is seen at one time.
+    #[inline(always)]
+    pub fn rate<S: Real>(&self, Sight { distance, velocity, .. }: &Sight<S>) -> Option<S> {
+        match &self.what {
+            What::Distance { .. } => Some(S::splat(2.0) * dot(*distance, *velocity)),
+            What::Plane { normal, .. } => Some(dot(splat(*normal), *velocity)),
+            What::Apsis { .. } | What::Energy(_) | What::Contact(_) | What::Function(_) => None,
+        }
+    }
+
     /// The rates of its value at both ends of a step `h`, where they follow from what is seen there.
     #[inline(always)]
     pub fn rates<S: Real>(&self, [start, end]: [&Sight<S>; 2], h: S) -> Option<[S; 2]> {
         let [(x0, v0), (x1, v1)] = [(start.distance, start.velocity), (end.distance, end.velocity)];
         match &self.what {
-            What::Distance { .. } => Some([S::splat(2.0) * dot(x0, v0), S::splat(2.0) * dot(x1, v1)]),
-            What::Plane { normal, .. } => Some([dot(splat(*normal), v0), dot(splat(*normal), v1)]),
+            What::Distance { .. } | What::Plane { .. } => Some([self.rate(start)?, self.rate(end)?]),
             What::Apsis { .. } => {
                 // Accelerations of the cubic through both ends.
                 let per_h = S::one() / h;

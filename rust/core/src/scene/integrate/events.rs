@@ -11,6 +11,7 @@ mod bodies;
 mod clear;
 mod contacts;
 mod inside;
+mod nearest;
 mod search;
 mod turns;
 

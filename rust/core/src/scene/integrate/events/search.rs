@@ -4,6 +4,7 @@
 use super::super::super::events::{Sight, What, dot};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, cubic_at, is_straight};
+use super::nearest::around;
 use super::turns::turns;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
@@ -21,7 +22,7 @@ const FEWEST: f64 = 128.0;
 const SECANTS: usize = 6;
 
 /// Steps of the last kind, which find it to round-off if the motion is uniform.
-const POLISHES: usize = 3;
+pub(super) const POLISHES: usize = 3;
 
 /// How far a function may bend away from the cubic in the middle of a step through which it goes almost straight, as a part
 /// of its way: not by enough to turn.
@@ -45,15 +46,14 @@ pub(super) struct Search<'s, 'a> {
 }
 
 /// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
-fn crosses(start: f64, end: f64) -> bool {
+pub(super) fn crosses(start: f64, end: f64) -> bool {
     (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
 }
 
-/// The points beside those at the ends of a bracket.
-fn around(points: &[(f64, f64)], [(from, _), (to, _)]: Bracket) -> [f64; 2] {
-    let before = points.iter().rev().find(|point| point.0 < from).map_or(0.0, |point| point.0);
-    let after = points.iter().find(|point| point.0 > to).map_or(1.0, |point| point.0);
-    [before, after]
+/// The brackets between points beside each other.
+pub(super) fn crossings(points: &[(f64, f64)]) -> Vec<Bracket> {
+    let pairs = points.windows(2).map(|pair| [pair[0], pair[1]]);
+    pairs.filter(|[start, end]| crosses(start.1, end.1)).collect()
 }
 
 impl Search<'_, '_> {
@@ -114,27 +114,22 @@ impl Search<'_, '_> {
         }
         points.push((1.0, self.ends[1]));
         rates.push(end);
-        let mut brackets: Vec<Bracket> = Vec::new();
-        for pair in points.windows(2) {
-            if crosses(pair[0].1, pair[1].1) {
-                brackets.push([pair[0], pair[1]]);
-            }
-        }
-        for (pair, rates) in points.windows(2).zip(rates.windows(2)) {
-            if let (&[a, b], &[Some(from), Some(to)]) = (pair, rates)
+        let mut brackets = crossings(&points);
+        for (index, rates) in rates.windows(2).enumerate() {
+            let (a, b) = (points[index], points[index + 1]);
+            if let &[Some(from), Some(to)] = rates
                 && a.1 * b.1 > 0.0
                 && a.1.signum() * from < 0.0
                 && a.1.signum() * to > 0.0
             {
-                brackets.extend(self.nearest(a, b, step, ticker)?);
+                brackets.extend(self.nearest(&points, index, step, ticker)?);
             }
         }
         for three in points.windows(3).filter(|_| end.is_none()) {
             if let &[left, middle, right] = three
                 && let Some(theta) = turns([left, middle, right])
             {
-                let lowest = (theta, self.value_at(theta, step, ticker)?);
-                brackets.extend(self.turn_beside([left, middle, right], lowest, step, ticker)?);
+                brackets.extend(self.turn_beside([left, middle, right], theta, step, ticker)?);
             }
         }
         // Windows overlap: one turn may be found from two of them.
@@ -159,7 +154,7 @@ impl Search<'_, '_> {
                 // It has passed zero a little sooner or later, or come near it and turned.
                 None if bracket[0].0 >= looked_up_to => {
                     let around = around(&points, bracket);
-                    looked_up_to = around[1];
+                    looked_up_to = around[3];
                     told.extend(self.dip(around, step, ticker)?);
                 }
                 None => {}
@@ -255,70 +250,9 @@ impl Search<'_, '_> {
         zero(whole, |theta| self.value_at(theta, step, ticker))
     }
 
-    /// The rate of a distance, up to a factor above zero; of nothing else.
-    fn rate(&self, sight: &Sight) -> Option<f64> {
-        let is_distance = matches!(self.watch.event(self.event).0.what, What::Distance { .. });
-        let along = self.span.to - self.span.from;
-        is_distance.then(|| along.signum() * dot(sight.distance, sight.velocity))
-    }
-
-    /// Where a distance that comes to an extremum between two points of the same sign passes zero there: two brackets, or
-    /// none. The extremum is where the rate changes its sign, however short the approach is.
-    fn nearest(
-        &mut self,
-        a: (f64, f64),
-        b: (f64, f64),
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Bracket>> {
-        let sign = a.1.signum();
-        let rates = [self.rate_at(a.0, step, ticker)?, self.rate_at(b.0, step, ticker)?];
-        if sign * rates[0] >= 0.0 || sign * rates[1] <= 0.0 {
-            return Ok(Vec::new());
-        }
-        let ends = [(a.0, rates[0]), (b.0, rates[1])];
-        let mut theta = zero(ends, |theta| self.rate_at(theta, step, ticker))?;
-        for _ in 0..POLISHES {
-            let sight = self.sight_at(theta, step, ticker)?;
-            if sight.value * sign <= 0.0 {
-                return Ok(vec![[a, (theta, sight.value)], [(theta, sight.value), b]]);
-            }
-            // As if the bodies moved uniformly there: a short approach on a long step is not lost to the rounding of its place.
-            let way = self.length() * dot(sight.velocity, sight.velocity);
-            let next = theta - dot(sight.distance, sight.velocity) / way;
-            if !(a.0 < next && next < b.0) {
-                break;
-            }
-            theta = next;
-        }
-        Ok(Vec::new())
-    }
-
-    /// Where the solution passes zero about a place where the cubic does, but not between the same points.
-    fn dip(
-        &mut self,
-        ends: [f64; 2],
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Bracket>> {
-        let mut told = [(0.0, self.ends[0]), (1.0, self.ends[1])];
-        for (told, theta) in told.iter_mut().zip(ends) {
-            if theta != told.0 {
-                *told = (theta, self.value_at(theta, step, ticker)?);
-            }
-        }
-        let [a, b] = told;
-        if crosses(a.1, b.1) { Ok(vec![told]) } else { self.nearest(a, b, step, ticker) }
-    }
-
     /// The length of the step.
-    fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         scale(self.span.to - self.span.from, self.watch.job.plan.units.time)
-    }
-
-    fn rate_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let sight = self.sight_at(theta, step, ticker)?;
-        Ok(self.rate(&sight).unwrap_or_default())
     }
 
     /// A zero of a distance as exactly as the time from the start of the step allows, where the step is long beside the
@@ -333,7 +267,9 @@ impl Search<'_, '_> {
         let h = self.length();
         for _ in 0..POLISHES {
             let sight = self.sight_at(theta, step, ticker)?;
-            let Some(_) = self.rate(&sight) else { break };
+            if !self.is_distance() {
+                break;
+            }
             let rounding = self.watch.event(self.event).0.rounding(&sight);
             let (a, b) =
                 (h * h * dot(sight.velocity, sight.velocity), h * dot(sight.distance, sight.velocity));
@@ -357,17 +293,27 @@ impl Search<'_, '_> {
     ) -> Result<Option<Bracket>> {
         let mut settled = bracket;
         for (theta, value) in &mut settled {
-            *value = match *theta {
-                0.0 => self.ends[0],
-                1.0 => self.ends[1],
-                theta => self.value_at(theta, step, ticker)?,
-            };
+            *value = self.value_on_solution(*theta, step, ticker)?;
         }
         if crosses(settled[0].1, settled[1].1) {
             return Ok(Some(settled));
         }
         let whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
         Ok(crosses(self.ends[0], self.ends[1]).then_some(whole))
+    }
+
+    /// As [`value_at`](Self::value_at), and what is known of the ends.
+    pub(super) fn value_on_solution(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        match theta {
+            0.0 => Ok(self.ends[0]),
+            1.0 => Ok(self.ends[1]),
+            theta => self.value_at(theta, step, ticker),
+        }
     }
 
     /// On the polynomial, or on the solution where there is none.
@@ -380,7 +326,12 @@ impl Search<'_, '_> {
         Ok(self.sight_at(theta, step, ticker)?.value)
     }
 
-    fn sight_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Sight> {
+    pub(super) fn sight_at(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Sight> {
         if self.watch.terms.is_empty() || self.watch.settles {
             let state = step.at(theta, ticker)?;
             self.watch.bodies.read(state, &mut self.watch.inside);

@@ -4,7 +4,7 @@
 //! followed down on the solution itself.
 
 use super::Interpolant;
-use super::search::{Bracket, Search};
+use super::search::{Bracket, Search, crossings};
 use crate::error::Result;
 use crate::parallel::Ticker;
 
@@ -13,19 +13,30 @@ use crate::parallel::Ticker;
 const SECTIONS: usize = 40;
 
 impl Search<'_, '_> {
-    /// As [`turn`](Self::turn), from three points of the same sign and a fourth where the parabola through them is lowest.
+    /// As [`turn`](Self::turn), from three points of the same sign, on the cubic, and a fourth where the parabola through
+    /// them is lowest.
     pub(super) fn turn_beside(
         &mut self,
-        [left, middle, right]: [(f64, f64); 3],
-        lowest: (f64, f64),
+        mut points: [(f64, f64); 3],
+        theta: f64,
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Bracket>> {
-        let (from, to) = if lowest.0 < middle.0 { (left, middle) } else { (middle, right) };
-        // No product, which may have left the range.
-        if lowest.1 == 0.0 || (lowest.1 < 0.0) != (middle.1 < 0.0) {
-            return Ok(vec![[from, lowest], [lowest, to]]);
+        let lowest = (theta, self.value_at(theta, step, ticker)?);
+        // Which of them is nearest to zero is asked of the solution: there the cubic may be off by more than they differ.
+        for (theta, value) in &mut points {
+            *value = self.value_on_solution(*theta, step, ticker)?;
         }
+        let [left, middle, right] = points;
+        let passed = if lowest.0 < middle.0 {
+            crossings(&[left, lowest, middle, right])
+        } else {
+            crossings(&[left, middle, lowest, right])
+        };
+        if !passed.is_empty() {
+            return Ok(passed);
+        }
+        let (from, to) = if lowest.0 < middle.0 { (left, middle) } else { (middle, right) };
         if lowest.1.abs() <= from.1.abs().min(to.1.abs()) {
             return self.turn(from, lowest, to, step, ticker);
         }
@@ -37,7 +48,7 @@ impl Search<'_, '_> {
     }
 
     /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
-    fn turn(
+    pub(super) fn turn(
         &mut self,
         left: (f64, f64),
         middle: (f64, f64),
