@@ -14,6 +14,9 @@ from visviva.errors import AccuracyWarning
 TOLERATED = 1e-2
 """Of kinetic + |potential| energy: beyond it not even the shape of an orbit can be trusted."""
 
+_OF_TOLERANCE = 1e4
+"""Of steps that follow `rtol` some thousands lose that of an energy; more are close passages, which multiply it."""
+
 _WANTED = 1e-3
 """What the step that is named aims at."""
 
@@ -50,11 +53,10 @@ def callers_inside() -> int:
     return depth
 
 
-def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -> None:
+def warn_if_unresolved(result: dict[str, Any], asked: dict[str, Any], *, ensemble: bool) -> None:
     """Warn of a step longer than the run, events without zeros, and a motion that was not resolved.
 
-    That is told by an energy error out of all proportion, else by an orbit, a turn of a charge or a step. Of scenes
-    with rigid bodies or without.
+    That is told by an energy error out of all proportion, else by an orbit, a turn of a charge or a step.
     """
     for place in result.pop("without_numbers", ()):
         message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
@@ -64,14 +66,20 @@ def warn_if_unresolved(result: dict[str, Any], *, ensemble: bool, rigid: bool) -
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"
         warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
-    if error <= TOLERATED:
+    follows = dt is None and asked["atol"] is None
+    if error <= (min(TOLERATED, _OF_TOLERANCE * asked["rtol"]) if follows else TOLERATED):
         if "too_long" in result:
             _warn_of_turn(result, ensemble=ensemble)
         elif "unresolved" in result:
             _warn_of_step(result, ensemble=ensemble)
         return
     whose = f"in copy {copy}, " if ensemble else ""
-    advice = _advice(result, error, dt, order, _OF_RIGID_BODIES if rigid else _OF_POINTS)
+    advice = _advice(result, error, dt, order, _OF_POINTS if asked["rigid"] is None else _OF_RIGID_BODIES)
+    if error <= TOLERATED:
+        advice = (
+            f"{error / asked['rtol']:.0e} times rtol = {asked['rtol']:g}, which each step is held to: close passages, or "
+            "many steps, multiply it; try a smaller rtol"
+        )
     size = f"{error:.2g}" if error < np.inf else "more than 1e308"
     message = f"{whose}the energy at the end is off by {size} of kinetic + |potential|: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())

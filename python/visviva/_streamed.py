@@ -84,7 +84,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             done = int((status != Status.INTERRUPTED).sum())
             where = f", which {path!r} holds" if done else ""
             raise Interrupted(f"interrupted after {done} of {len(copies)} copies{where}") from stopped
-    warn_if_unresolved(worst, ensemble=True, rigid=asked["rigid"] is not None)
+    warn_if_unresolved(worst, asked, ensemble=True)
     return status
 
 

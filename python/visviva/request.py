@@ -336,7 +336,7 @@ def finished(
         from visviva._rigid_accuracy import look
 
         look(result, asked, cast("Any", made)._scene)
-    warn_if_unresolved(result, ensemble=ensemble, rigid=asked["rigid"] is not None)
+    warn_if_unresolved(result, asked, ensemble=ensemble)
     if times_may_be_coarse(asked["t0"], asked["times"].item(-1) if asked["times"].size else asked["t0"]):
         from visviva._coarse_times import warn_of_coarse_times
 

@@ -134,3 +134,24 @@ def test_what_is_asked_for_or_what_was_reached(case: tuple[object, ...], toleran
         # The tolerance is of what is added up, a few times ψ where the attraction is strong, and more of small angles.
         size = max(abs(found.angle[i]), min(1.0, 1e3 * abs(found.angle[i])))
         assert found.error[i] <= max(3e-14, 4.0 * tolerance) * size, (energy[i], b[i])
+
+
+HILLS = {"plummer": V.Plummer(2.0, 0.5), "gauss": V.Custom(lambda r: 3.0 * np.exp(-r * r))}
+
+
+@pytest.mark.parametrize("hill", HILLS.values(), ids=HILLS)
+def test_what_just_reaches_the_top_of_a_hill(hill: V.Potential) -> None:
+    """Head-on at E = V(0) it comes to rest there: no angle is told, and the others are what they are alone."""
+    top = float(hill.value(0.0))
+    found = s.deflect(hill, energy=top, impact_parameter=[0.0, 1e-200, 1e-6, 0.4])
+    assert (found.status == [s.DeflectionStatus.NEAR_ORBITING] * 2 + [s.DeflectionStatus.SCATTERED] * 2).all()
+    np.testing.assert_array_equal(found.angle[:2], 0.5 * np.pi)
+    np.testing.assert_array_equal(found.error[:2], 0.5 * np.pi)
+    assert np.isposinf(found.path_delay[:2]).all()
+    # With b it goes round the top by a quarter of a turn, less a number of the order of r₀², which is of that of b.
+    assert 0.5 * np.pi - 2e-5 < found.angle[2] < 0.5 * np.pi
+    alone = s.deflect(hill, energy=top, impact_parameter=0.4)
+    assert found.angle[3] == alone.angle
+    # A little below it turns back, a little above it goes over.
+    beside = s.deflect(hill, energy=top * (1.0 + np.array([-1e-9, 1e-9])), impact_parameter=0.0)
+    np.testing.assert_array_equal(beside.angle, [np.pi, 0.0])

@@ -122,7 +122,7 @@ impl Quadrature<'_> {
                     0.0
                 };
             }
-            _ if b > 0.0 => {}
+            _ if b > 0.0 || found.is_unknown() => {}
             _ => (found.angle, found.complement) = (PI, 0.0),
         }
         if !self.all {

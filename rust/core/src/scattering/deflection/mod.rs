@@ -31,6 +31,7 @@ use crate::potentials::Potential;
 use crate::words::number;
 use crate::{Error, Result};
 use closed::Closed;
+use core::f64::consts::FRAC_PI_2;
 use pairs::Quadrature;
 use profile::Profile;
 use std::sync::Arc;
@@ -93,6 +94,16 @@ impl Deflection {
             turning_points: 0,
             status: Status::Captured,
         }
+    }
+    /// Comes to the top of a hill at the center with nothing left, to the last digit of its energy: on its way down from there
+    /// it may be anywhere from 0 to π.
+    fn rest_on_top(&mut self) {
+        (self.angle, self.complement, self.error) = (FRAC_PI_2, FRAC_PI_2, FRAC_PI_2);
+        (self.derivative, self.delay) = (f64::NEG_INFINITY, f64::INFINITY);
+        self.status = Status::NearOrbiting;
+    }
+    fn is_unknown(&self) -> bool {
+        self.error >= FRAC_PI_2
     }
     fn forget_angle(&mut self) {
         (self.angle, self.complement, self.error) = (f64::NAN, f64::NAN, f64::INFINITY);

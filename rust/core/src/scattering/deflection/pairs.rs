@@ -17,6 +17,8 @@ use core::f64::consts::PI;
 
 /// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
 pub(super) const NEAR_ORBITING: f64 = 1e-4;
+/// What rises by no more than this part of the energy on a way of r is level for all that its rounding tells.
+const LEVEL: f64 = 64.0 * f64::EPSILON;
 /// And here equal steps would be many.
 const NEAR_BARRIER: f64 = 0.003;
 /// An angle of less than this part of what cancels in it is found as a sum of small turns.
@@ -277,6 +279,12 @@ impl Quadrature<'_> {
             (pack.turning.0[lane], pack.value.0[lane], pack.force.0[lane], pack.root.0[lane]);
         found.closest_approach = r;
         found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
+        // G rises from its turning point as this; there is nothing of it on the top of a hill that the energy just reaches.
+        let steep = 2.0_f64.mul_add(root * root, y);
+        if matches!(profile.center(), Center::Open(_)) && steep.abs() <= LEVEL {
+            found.rest_on_top();
+            return;
+        }
         let strong = x < STRONG;
         let single = || {
             // Measured against V where that is small: on the last of a soft edge the force is far below E/r₀, and all of it is
@@ -305,7 +313,6 @@ impl Quadrature<'_> {
         }
         found.error = 2.0 * root * error + f64::EPSILON * found.angle.abs();
         if self.all {
-            let steep = 2.0_f64.mul_add(root * root, y);
             let lost = integral[2] + comparison::closed_delay(x, root);
             found.derivative = -2.0 / (r * steep) * Comparison::of(x, root).slope(y, integral[1]);
             found.delay = -2.0 * r * lost + profile.endless_delay();
