@@ -5,17 +5,20 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva.errors import AccuracyWarning
 
+if TYPE_CHECKING:
+    from visviva import _core
+
 TOLERATED = 1e-2
 """Of kinetic + |potential| energy: beyond it not even the shape of an orbit can be trusted."""
 
 _OF_TOLERANCE = 1e4
-"""Of steps that follow `rtol` some thousands lose that of an energy; more are close passages, which multiply it."""
+"""What many steps that follow `rtol` lose of an energy is not so many times it; what close passages multiply is."""
 
 _WANTED = 1e-3
 """What the step that is named aims at."""
@@ -53,7 +56,7 @@ def callers_inside() -> int:
     return depth
 
 
-def warn_if_unresolved(result: dict[str, Any], asked: dict[str, Any], *, ensemble: bool) -> None:
+def warn_if_unresolved(result: dict[str, Any], asked: _core._Request, *, ensemble: bool) -> None:
     """Warn of a step longer than the run, events without zeros, and a motion that was not resolved.
 
     That is told by an energy error out of all proportion, else by an orbit, a turn of a charge or a step.
@@ -77,8 +80,8 @@ def warn_if_unresolved(result: dict[str, Any], asked: dict[str, Any], *, ensembl
     advice = _advice(result, error, dt, order, _OF_POINTS if asked["rigid"] is None else _OF_RIGID_BODIES)
     if error <= TOLERATED:
         advice = (
-            f"{error / asked['rtol']:.0e} times rtol = {asked['rtol']:g}, which each step is held to: close passages, or "
-            "many steps, multiply it; try a smaller rtol"
+            f"{error / asked['rtol']:.0e} times rtol = {asked['rtol']:g}, to which each step is held: close passages, "
+            "or many steps, multiply it; try a smaller rtol"
         )
     size = f"{error:.2g}" if error < np.inf else "more than 1e308"
     message = f"{whose}the energy at the end is off by {size} of kinetic + |potential|: {advice}"

@@ -270,7 +270,8 @@ class Interrupted(KeyboardInterrupt):
 class AccuracyWarning(UserWarning):
     """A run came to its end, but resolved nothing: the energy at the end is not that of the start.
 
-    After fixed steps the two are compared, wherever that costs next to nothing beside the run. What energies do not
+    The two are compared wherever that costs next to nothing beside the run: they may differ by a hundredth of kinetic +
+    |potential|, and by 1e4 `rtol` after steps that follow it, which close passages multiply. What energies do not
     know of is looked at, too: orbits, and charges that `boris` turns, with fewer than six steps to a turn; and of
     Runge-Kutta methods the first step and one from the end, against two of half the length, as under drag and of
     massless bodies. The message names the figure and a step that would do. So are told a step longer than the run, and

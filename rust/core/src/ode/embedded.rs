@@ -114,22 +114,6 @@ impl<S: Controlled> EmbeddedStep<S> {
         self.combined(norm.sizes(state, &self.next, elapsed, &changes))
     }
 
-    /// As [`polynomial`](Trial::polynomial), of a coordinate and its velocity in a state of the first order.
-    fn polynomial_of_rates(&self, numbers: [usize; 2], h: S, into: &mut Vec<[S; 2]>) {
-        let (len, [_, basis]) = (self.stages.len(), &self.between().weights);
-        let rate = |stage: usize, number: usize| self.stages.k[stage * len + number];
-        for term in 0..self.terms() {
-            // What is left of the way when the velocity has had its part.
-            let mut sums = [if term == 0 { -rate(0, numbers[0]) } else { S::zero() }, S::zero()];
-            for (stage, weights) in basis.iter().enumerate() {
-                for (sum, number) in sums.iter_mut().zip(numbers) {
-                    *sum = weights[term].multiply_add(rate(stage, number), *sum);
-                }
-            }
-            into.push([sums[0] / h, sums[1]]);
-        }
-    }
-
     /// Where the derivative at the end, which no estimate weighs, is another than that of the last stage, which is at the end
     /// too: a stiff force that begins within the step has thrown the stages back to where it is not.
     fn misses_its_end(&self, state: &State<S>, elapsed: &S, h: S, norm: &Norm<S>) -> S::Mask {

@@ -11,10 +11,15 @@ use crate::words::number;
 /// Points of a table at least: with fewer, a curvature would be a guess.
 const LEAST: usize = 4;
 
+/// Where V falls over an interval to less than this part of itself, its second half is told from its end.
+const FALLS: f64 = 1.0 / 64.0;
+
 /// A table and its curve.
 #[derive(Clone, Debug)]
 pub struct Tabulated {
     curve: Piecewise<8>,
+    /// The distances of the table, where its pieces meet.
+    places: Vec<f64>,
 }
 
 /// What it declares about itself.
@@ -61,7 +66,7 @@ fn check(r: &[f64], v: &[f64]) -> Result<()> {
             format!("expected ascending distances, got r[{at}] = {here} and then r[{}] = {next}", at + 1);
         return Err(Error::invalid("r", message));
     }
-    let pieces = pieces(r, v, |_| false);
+    let pieces = pieces(r, v, false);
     match pieces.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
         None => Ok(()),
         Some(at) => Err(Error::invalid(
@@ -74,9 +79,34 @@ fn check(r: &[f64], v: &[f64]) -> Result<()> {
     }
 }
 
-/// Origin, inverse of the length and coefficients of each interval, and of the last point. Intervals are told from their
-/// beginning, or where `from_end` says so from their end, backwards: near there their values have all their digits.
-pub(crate) fn pieces(r: &[f64], v: &[f64], from_end: impl Fn(usize) -> bool) -> Vec<[f64; 8]> {
+/// The curve through a table. What is left of V where it falls to next to nothing would be lost to the rounding of what it
+/// falls from: the second half of such an interval is the same quintic, told from its end.
+fn curve(r: &[f64], v: &[f64]) -> Piecewise<8> {
+    let last = r.last().copied().unwrap_or_default();
+    let from_beginning = pieces(r, v, false);
+    let falls = |i: usize| v.get(i + 1).is_some_and(|next| next.abs() < FALLS * v[i].abs());
+    if !(0..r.len()).any(falls) {
+        return Piecewise::new(r.to_vec(), last, from_beginning);
+    }
+    let from_end = pieces(r, v, true);
+    let (mut starts, mut rows) = (Vec::new(), Vec::new());
+    for i in 0..r.len() {
+        starts.push(r[i]);
+        rows.push(from_beginning[i]);
+        if falls(i) {
+            let middle = r[i] + 0.5 * (r[i + 1] - r[i]);
+            if r[i] < middle && middle < r[i + 1] {
+                starts.push(middle);
+                rows.push(from_end[i]);
+            }
+        }
+    }
+    Piecewise::new(starts, last, rows)
+}
+
+/// Origin, inverse of the length and coefficients of each interval, and of the last point; each from its beginning, or from
+/// its end backwards.
+pub(crate) fn pieces(r: &[f64], v: &[f64], from_end: bool) -> Vec<[f64; 8]> {
     // In units near one, as fifth powers and differences of fourth order are taken.
     let largest = |values: &[f64]| exponent(values.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let (length, energy) = (largest(r), largest(v));
@@ -89,7 +119,7 @@ pub(crate) fn pieces(r: &[f64], v: &[f64], from_end: impl Fn(usize) -> bool) -> 
         let h = if i < last { places[i + 1] - places[i] } else { places[i] - places[i - 1] };
         let (origin, h, c) = if i == last {
             (r[i], h, [v[i], h * bends[i][0], 0.5 * h * h * bends[i][1], 0.0, 0.0, 0.0])
-        } else if from_end(i) {
+        } else if from_end {
             (r[i + 1], -h, quintic(-h, [v[i + 1], v[i]], bends[i + 1], bends[i]))
         } else {
             (r[i], h, quintic(h, [v[i], v[i + 1]], bends[i], bends[i + 1]))
@@ -106,15 +136,13 @@ impl Formula for Tabulated {
 
     fn new(values: &[Value]) -> Self {
         let (r, v) = (values[0].table(), values[1].table());
-        let last = r.last().copied().unwrap_or_default();
-        let lower_end = |i: usize| v[i + 1].abs() < v[i].abs();
-        Self { curve: Piecewise::new(r.to_vec(), last, pieces(r, v, lower_end)) }
+        Self { curve: curve(r, v), places: r.to_vec() }
     }
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())
     }
     fn breaks(&self) -> Vec<f64> {
-        self.curve.starts().to_vec()
+        self.places.clone()
     }
 
     #[inline(always)]

@@ -145,7 +145,7 @@ pub fn of_table(reynolds: &[f64], law: &[f64]) -> Result<Fit> {
         .zip(law)
         .map(|(&reynolds, &law)| factor("F", reynolds, law))
         .collect::<Result<_>>()?;
-    let rows = pieces(reynolds, &factors, |_| false);
+    let rows = pieces(reynolds, &factors, false);
     let own = rows[..reynolds.len() - 1].iter().map(|row| {
         let [_, _, a, b, c, d, e, f] = *row;
         centered([0.0; TERMS], [a, b, c, d, e, f])

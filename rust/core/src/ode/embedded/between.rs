@@ -1,6 +1,6 @@
 //! The continuous extension of an embedded method: what a run that looks between its steps needs, and no other.
 
-use super::Embedded;
+use super::{Embedded, EmbeddedStep};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Element;
 use crate::numerics::real::Real;
@@ -8,7 +8,9 @@ use crate::ode::nystrom::{Row, nystrom_weights};
 use crate::ode::passes::extension::Weigh;
 use crate::ode::passes::stages::Term;
 use crate::ode::runge_kutta::coupling;
+use crate::ode::step_control::Controlled;
 use crate::ode::system::Form;
+use crate::ode::trial::Trial;
 
 /// Weights of the derivatives in the coordinates and in the velocities; of a system of the first order, the first are none.
 pub(super) type Weights<T> = [Vec<T>; 2];
@@ -65,6 +67,24 @@ impl<S: Element> Between<S> {
             terms.clear();
             terms.extend((0..basis.len()).map(|stage| Term { stage, weight: S::zero() }));
             S::pass(Weigh { terms, basis, theta: &theta });
+        }
+    }
+}
+
+impl<S: Controlled> EmbeddedStep<S> {
+    /// As [`polynomial`](Trial::polynomial), of a coordinate and its velocity in a state of the first order.
+    pub(super) fn polynomial_of_rates(&self, numbers: [usize; 2], h: S, into: &mut Vec<[S; 2]>) {
+        let (len, [_, basis]) = (self.stages.len(), &self.between().weights);
+        let rate = |stage: usize, number: usize| self.stages.k[stage * len + number];
+        for term in 0..self.terms() {
+            // What is left of the way when the velocity has had its part.
+            let mut sums = [if term == 0 { -rate(0, numbers[0]) } else { S::zero() }, S::zero()];
+            for (stage, weights) in basis.iter().enumerate() {
+                for (sum, number) in sums.iter_mut().zip(numbers) {
+                    *sum = weights[term].multiply_add(rate(stage, number), *sum);
+                }
+            }
+            into.push([sums[0] / h, sums[1]]);
         }
     }
 }
