@@ -106,10 +106,28 @@ pub struct Lookup {
 }
 
 impl Lookup {
-    /// Of intervals that begin at increasing draws, the first at 0; so many cells for each, about.
+    /// The fewest cells, and the most.
+    const CELLS: [usize; 2] = [1 << 8, 1 << 18];
+    /// The most intervals to a cell, in the mean: draws are compared with half of those of a cell.
+    const MOST_IN_A_CELL: usize = 4;
+
+    /// Of intervals that begin at increasing draws, the first at 0; so many cells for each, about. Intervals that crowd, as
+    /// beside an orbit, share cells into which few draws fall: of those that hold a start there are so many times as many.
     pub fn new(mut starts: Vec<u64>, cells_each: usize) -> Self {
-        let cells = (cells_each * starts.len()).next_power_of_two().clamp(1 << 8, 1 << 18);
-        let shift = DRAW_BITS - cells.trailing_zeros();
+        let [fewest, most] = Self::CELLS;
+        let shift_of = |cells: usize| DRAW_BITS - cells.trailing_zeros();
+        let holding = |cells: usize| {
+            let shift = shift_of(cells);
+            1 + starts.windows(2).filter(|pair| pair[0] >> shift != pair[1] >> shift).count()
+        };
+        let mut cells = (cells_each * starts.len()).next_power_of_two().clamp(fewest, most);
+        while cells > fewest
+            && starts.len() <= Self::MOST_IN_A_CELL * (cells / 2)
+            && cells_each * holding(cells / 2) <= cells / 2
+        {
+            cells /= 2;
+        }
+        let shift = shift_of(cells);
         let cells = (0..cells as u64)
             .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
             .collect();
