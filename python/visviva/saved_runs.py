@@ -105,6 +105,11 @@ def resume(path: str | PathLike[str], *, threads: int | None = None, progress: P
             f"expected a run that was saved as it went, in {str(folder)!r}; give the folder that save_to named: "
             f"{error}",
         ) from error
+    if not (folder / _START).is_file():
+        raise InvalidInput(
+            "path",
+            f"expected {_START}, what the run began with, in {str(folder)!r}, but it is gone; put it back or run anew",
+        )
     start = _loaded(folder / _START)
     return _go_on(folder, start.scene, replace(request, threads=threads, progress=progress))
 

@@ -267,3 +267,6 @@ def test_what_is_no_such_run_is_refused_by_name(tmp_path: Path) -> None:
         (other / name).write_bytes(text)
         with pytest.raises(vv.InvalidInput):
             vv.resume(other)
+    (folder / "start.npz").unlink()
+    with pytest.raises(vv.InvalidInput, match=r"^path: expected start.npz, .* put it back or run anew$"):
+        vv.resume(folder)

@@ -96,7 +96,7 @@ pub(super) fn look(
                 };
                 let rounding = beside.0.plus(beside.1).plus(kinetic_end.plus(potential_end).times(-1.0));
                 let rounding = ROUNDINGS * rounding.over(whole).to_f64().abs();
-                if rounding > 0.0 {
+                if rounding.is_finite() {
                     outcome.energy_error = (outcome.energy_error - rounding).max(0.0);
                 }
             }
