@@ -80,8 +80,11 @@ def equal_steps(event: vv.events.Event | Callable[..., float], phase: float, met
 # through the ends of a step of 0.25 is 1e-5 off, ten times as much as x = -0.99999 is short of the turn.
 @pytest.mark.parametrize("d", [1e-4, 1e-5])
 @pytest.mark.parametrize("kind", ["plane", "greatest", "least", "function"])
-@pytest.mark.parametrize(("method", "dt"), [("kahan_li8", 0.25), ("stormer13", 0.08)])
-def test_both_zeros_within_one_equal_step(kind: str, d: float, method: str, dt: float) -> None:
+# In steps of 0.6 the cubic turns beside another sample than the motion.
+@pytest.mark.parametrize(
+    ("method", "dt", "off"), [("kahan_li8", 0.25, 1e-8), ("stormer13", 0.08, 1e-8), ("kahan_li8", 0.6, 1e-5)]
+)
+def test_both_zeros_within_one_equal_step(kind: str, d: float, method: str, dt: float, off: float) -> None:
     least, period = NARROW * (1.0 + d), np.pi
     half = np.arccos(np.sqrt((least**2 - NARROW**2) / (1.0 - NARROW**2)))
     event: vv.events.Event | Callable[..., float]
@@ -98,5 +101,5 @@ def test_both_zeros_within_one_equal_step(kind: str, d: float, method: str, dt: 
         turns = period * np.arange(-3, 5) - phase
         expected = np.sort(np.concatenate([turns - half, turns + half]))
         expected = expected[(expected > 0.0) & (expected < 6.0)]
-        # Both methods are within 1e-11 of the place in a turn; beside it the function has a slope of √d or more.
-        np.testing.assert_allclose(equal_steps(event, phase, method, dt), expected, rtol=0.0, atol=1e-8)
+        # The methods are within 1e-11 of the place in a turn, in ten steps within 1e-8; there the slope is √d or more.
+        np.testing.assert_allclose(equal_steps(event, phase, method, dt), expected, rtol=0.0, atol=off)
