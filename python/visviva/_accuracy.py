@@ -40,6 +40,13 @@ _OF_STEPS = ("an adaptive method (verner98)",) * 2
 _OF_RIGID_BODIES = ("leaving dt out, for steps that follow rtol",) * 2
 """What may be tried beside a shorter step: where it nearly does, and where it does nothing of the kind."""
 
+_EVIDENCE = {
+    "first_step": "after the first step",
+    "step_from_the_end": "after a step from the end",
+    "drive": "by a DrivenForce that has less than two steps to a period",
+}
+"""What tells that a step does not resolve a motion."""
+
 _FAR = 1e3
 """So many times the span from the time zero, a phase of a thousand turns still has ten digits."""
 
@@ -74,7 +81,7 @@ def warn_if_unresolved(result: dict[str, Any], asked: _core._Request, *, ensembl
         if "too_long" in result:
             _warn_of_turn(result, ensemble=ensemble)
         elif "unresolved" in result:
-            _warn_of_step(result, ensemble=ensemble)
+            _warn_of_step(result, asked, ensemble=ensemble)
         return
     whose = f"in copy {copy}, " if ensemble else ""
     advice = _advice(result, error, dt, order, _OF_POINTS if asked["rigid"] is None else _OF_RIGID_BODIES)
@@ -98,15 +105,14 @@ def times_may_be_coarse(t0: float, end: float) -> bool:
     return max(abs(t0), abs(end)) > _FAR * abs(end - t0) > 0.0
 
 
-def _warn_of_step(result: dict[str, Any], *, ensemble: bool) -> None:
+def _warn_of_step(result: dict[str, Any], asked: _core._Request, *, ensemble: bool) -> None:
     """Warn of a step that two of half its length contradict, where energies know nothing: under drag, without mass."""
-    copy, body, error, at_end, dt, order = result["unresolved"]
+    copy, velocity, error, by, dt, order = result["unresolved"]
     whose = f"in copy {copy}, " if ensemble else ""
-    which = "a step from the end" if at_end else "the first step"
     # The error of one step goes as dt to one power more than that at the end.
-    advice = _advice(result, error, dt, order + 1, _OF_STEPS)
+    advice = _advice(result, error, dt, order + 1, _OF_STEPS if asked["rigid"] is None else _OF_RIGID_BODIES)
     size = f"{error:.2g} of itself" if error < np.inf else "more than 1e308"
-    message = f"{whose}after {which} the velocity of body {body} is off by {size}: {advice}"
+    message = f"{whose}{_EVIDENCE[by]} {velocity} is off by {size}: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
@@ -152,9 +158,21 @@ def warn_of_energy(dt: float | None, error: float, copy: int | None) -> None:
             "give a max_step below the time that its narrowest part takes, or a smaller rtol"
         )
     else:
-        cause = (
-            f"a step of dt = {dt:g} does not resolve this motion; take a shorter one, or leave it to gauss16, which "
-            "chooses its own"
-        )
+        cause = _too_long(dt)
     message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {cause}"
     warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
+
+
+def warn_of_step(dt: float, error: float, at_end: bool, copy: int | None) -> None:
+    """Warn of a step in generalized coordinates that two of half its length contradict."""
+    whose = "" if copy is None else f"in copy {copy}, "
+    which = _EVIDENCE["step_from_the_end" if at_end else "first_step"]
+    message = f"{whose}{which} the velocities are off by {error:.2g} of themselves: {_too_long(dt)}"
+    warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
+
+
+def _too_long(dt: float) -> str:
+    return (
+        f"a step of dt = {dt:g} does not resolve this motion; take a shorter one, or leave it to gauss16, which "
+        "chooses its own"
+    )

@@ -10,6 +10,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._accuracy import TOLERATED
+from visviva._rigid_steps import COLUMNS, after_a_step, unresolved
 from visviva._turning import kept_by_bodies
 from visviva.errors import Error
 from visviva.status import Status
@@ -36,7 +37,7 @@ _LEAST = 1e-290
 _NOTHING = 1e-9
 """Of what the forces give in a step: energies of a start that tell nothing of how large those of the motion are."""
 
-_COLUMNS = ["energy", "kinetic_energy", "potential_energy"]
+_ENERGIES = ["energy", "kinetic_energy", "potential_energy"]
 
 _OWN = ("moments", "axes", "center", "orientation", "angular_velocity")
 
@@ -44,7 +45,7 @@ _OWN = ("moments", "axes", "center", "orientation", "angular_velocity")
 def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
     """Tell in the result of a run of copies of the scene how far the worst of their energies is off at the end.
 
-    Where it costs next to nothing beside the run, and the forces conserve energy.
+    Where it costs next to nothing beside the run, and the forces conserve energy. Where they do not, of steps.
     """
     if asked["rigid"] is None or asked["dt"] is None or not result["stats"]["steps"]:
         return
@@ -52,23 +53,29 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
     together = asked["own_forces"] is None and bool((asked["mass"] == asked["mass"][0]).all())
     few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
     fewest = _ALONE if not together else 0 if few else _MANY_EVALUATIONS
-    looked_at = (result["status"] == Status.OK) & (result["per_trajectory"]["evaluations"] >= fewest)
+    finished, told = result["status"] == Status.OK, _tells(asked, scene)
+    looked_at = finished & told & (result["per_trajectory"]["evaluations"] >= fewest)
     copies = np.flatnonzero(looked_at)
     groups = ([copies] if together else np.split(copies, len(copies))) if len(copies) else []
     changes, sizes, starts = np.zeros((3, len(looked_at)))
     for group in groups:
         # As the core does, which tells nothing where it has no energy.
         with suppress(Error):
-            if _conserves(asked, group[0], scene):
-                changes[group], sizes[group], starts[group] = _changes(result, asked, group)
+            changes[group], sizes[group], starts[group] = _changes(result, asked, group)
     worst, error = _worst(changes, sizes, starts, asked)
+    order = _order(result["stats"]["method"])
     if error > 0.0:
-        result["energy_error"] = (worst, error, abs(asked["dt"]), _orders()[result["stats"]["method"]])
+        result["energy_error"] = (worst, error, abs(asked["dt"]), order)
+    doubt = unresolved(result, asked, np.flatnonzero(finished & ~told), order)
+    if doubt is not None:
+        result["unresolved"] = doubt
 
 
 @cache
-def _orders() -> dict[str, int]:
-    return {method["name"]: method["order"] for method in _core.methods(rigid=True)}
+def _order(name: str) -> int:
+    """Of a method by that name, which turns bodies or, where nothing turns them, moves them."""
+    methods = [*_core.methods(rigid=True), *_core.methods()]
+    return next(int(method["order"]) for method in methods if method["name"] == name)
 
 
 def _worst(
@@ -95,6 +102,16 @@ def _forces(asked: _core._Request, copy: int) -> list[dict[str, Any]]:
     return asked["forces"] if own is None else own[0][own[1][copy]]
 
 
+def _tells(asked: _core._Request, scene: Scene) -> NDArray[np.bool_]:
+    """Of each copy whether its energy is conserved."""
+    copies = len(asked["mass"])
+    if asked["own_forces"] is None:
+        return np.full(copies, _conserves(asked, 0, scene))
+    own = np.asarray(asked["own_forces"][1])
+    _, firsts, sets = np.unique(own, return_index=True, return_inverse=True)
+    return np.array([_conserves(asked, int(copy), scene) for copy in firsts])[sets]
+
+
 def _conserves(asked: _core._Request, copy: int, scene: Scene) -> bool:
     kept = _core.conserves(
         mass=asked["mass"][copy],
@@ -113,7 +130,7 @@ def _changes(
     first = (asked["position"], asked["velocity"], *_turning(asked))
     states = [np.concatenate([a[copies], b[copies]]) for a, b in zip(first, _last(result), strict=True)]
     told = _energies(asked, copies[0], states)
-    energy, kinetic, potential = (told[name].reshape(2, -1) for name in _COLUMNS)
+    energy, kinetic, potential = (told[name].reshape(2, -1) for name in _ENERGIES)
     with np.errstate(all="ignore"):
         change = np.abs(energy[1] - energy[0])
         change[np.isfinite(energy[0]) & ~np.isfinite(kinetic[1])] = np.inf
@@ -131,7 +148,7 @@ def _turning(asked: _core._Request) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 
 def _last(result: dict[str, Any]) -> list[NDArray[np.float64]]:
-    return [result["final"][name] for name in ("position", "velocity", "orientation", "angular_velocity")]
+    return [result["final"][name] for name in COLUMNS]
 
 
 def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
@@ -143,7 +160,7 @@ def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]
         position=position,
         velocity=velocity,
         about=np.zeros(3),
-        columns=_COLUMNS,
+        columns=_ENERGIES,
         turning=(_rigid(asked, copy), turning[0], turning[1]),
     )
 
@@ -164,11 +181,10 @@ def _gained_in_a_step(asked: _core._Request, copy: int) -> float:
     request: Any = dict(asked)
     for name in ("mass", "position", "velocity"):
         request[name] = request[name][copy : copy + 1]
-    step = np.copysign(asked["dt"] or 0.0, asked["times"][-1] - asked["t0"])
     request |= {"rigid": _rigid(asked, copy), "radius": None, "forces": _forces(asked, copy), "own_forces": None}
-    request |= {"times": np.array([asked["t0"] + step]), "end_only": True, "continuation": None, "events": []}
+    start = [request["position"], request["velocity"], *_turning(request)]
     with suppress(Error):
-        result = _core.run(request, threads=1, progress=None, ensemble=False)
-        kinetic = float(_energies(asked, copy, _last(result))["kinetic_energy"][0])
+        after = after_a_step(request, start, asked["t0"], asked["dt"] or 0.0)
+        kinetic = float(_energies(asked, copy, after)["kinetic_energy"][0])
         return kinetic if np.isfinite(kinetic) else 0.0
     return 0.0

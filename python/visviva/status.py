@@ -29,8 +29,9 @@ class Status(NamedCode):
         Bodies came to a distance or a speed at which a force is not known, as beyond a table: give it more points, or
         end the run before it.
     RESTING : 7
-        Spheres that bounce came to rest on each other, in ever smaller bounces or pressed together: end the run before
-        it, or let a soft repulsion hold them apart.
+        Spheres that bounce came to rest on each other, in ever smaller bounces or pressed together, or a massless one
+        between two that come together bounced thousands of times, each sooner than the last: end the run before it, or
+        let a soft repulsion hold them apart.
 
     Examples
     --------

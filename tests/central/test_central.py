@@ -324,3 +324,38 @@ def test_narrow_and_deep_wells() -> None:
         close(part.r_max - part.r_min, np.log((1 + np.sqrt(0.5)) / (1 - np.sqrt(0.5))) / width, 1e-9)
     found = vv.orbits.circular_orbit(Mie(1e20, 1.0, 40.0, 6.0), (40 / 6) ** (1 / 34) * 1.001)
     assert found.stable
+
+
+@pytest.mark.parametrize("apart", [1e-3, 1e-7, 1e-10, 2.0**-52])
+@pytest.mark.parametrize("start", [0.6, 1.0, 1.3, 0.5 + 1e-6])
+def test_near_distances_keep_their_digits(start: float, apart: float) -> None:
+    """The difference of two variables lost them: 1.8e-6 of the time between 1 and 1 + 1e-10."""
+    eccentricity, momentum = 0.5, float(np.sqrt(0.75))
+    end = start + apart * start
+    with mpmath.workdps(50):
+        # r = 1 - e cos E of the ellipse with a = 1 through pericenter 1/2; times and true anomalies of both.
+        def at(r: float) -> tuple[mpmath.mpf, mpmath.mpf]:
+            # Its angular momentum is that of floats, and with it its eccentricity.
+            e = mpmath.sqrt(1 - mpmath.mpf(momentum) ** 2)
+            anomaly = mpmath.acos((1 - mpmath.mpf(r)) / e)
+            half = mpmath.sqrt((1 + e) / (1 - e)) * mpmath.tan(anomaly / 2)
+            return anomaly - e * mpmath.sin(anomaly), 2 * mpmath.atan(half)
+
+        exact = [float(b - a) for a, b in zip(at(start), at(end), strict=True)]
+    assert eccentricity == pytest.approx(np.sqrt(1.0 - momentum**2), rel=1e-15)
+    kepler = vv.potentials.Coulomb(-1.0)
+    for find, wanted in zip((vv.orbits.time_of_flight, vv.orbits.swept_angle), exact, strict=True):
+        # At 1e-6 from the turning point K = (E - V)r² - l²/2m, of differences of floats, has ten digits.
+        found = find(kepler, start, end, energy=-0.5, angular_momentum=momentum)
+        assert found == pytest.approx(wanted, rel=4e-15 if start > 0.55 else 1e-9)
+        assert find(kepler, end, start, energy=-0.5, angular_momentum=momentum) == found
+
+
+def test_near_distances_across_a_break_of_a_table() -> None:
+    """The kinks of a table are ends of panels there, too."""
+    r = np.linspace(0.5, 3.0, 26)
+    table = vv.potentials.Tabulated(r, 1.0 / r)
+    whole = vv.orbits.time_of_flight(table, 1.0, 1.2, energy=4.0, angular_momentum=0.3)
+    ends = np.linspace(1.0, 1.2, 12)
+    parts = vv.orbits.time_of_flight(table, ends[:-1], ends[1:], energy=4.0, angular_momentum=0.3)
+    assert parts.sum() == pytest.approx(whole, rel=1e-13)

@@ -243,3 +243,33 @@ def test_planetesimals_become_one_and_columns_know_it() -> None:
     gone = np.flatnonzero(out.final.particles.mass == 0.0)
     with pytest.raises(vv.InvalidInput, match="become a part of another"):
         out.elements(about=int(gone[0]))
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e-30])
+def test_a_light_ball_between_two_that_come_together_bounces_infinitely_often(mass: float) -> None:
+    """A run past the end hung. Each bounce adds twice the speed of a wall: after n of them the gap is as 1/n."""
+    places = [[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.1, 0.0, 0.0]]
+    speeds = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+    scene = spheres([1.0, 1.0, mass], places, speeds, [0.3, 0.3, 0.2])
+    out = scene.run(1.49, collisions="bounce")
+    assert out.status is vv.Status.OK
+    assert abs(out.velocity[-1, 2, 0]) == pytest.approx(2.0 * len(out.collisions), rel=1e-12)
+    with pytest.raises(vv.ConvergenceError, match="infinitely often") as caught:
+        scene.run(2.0, collisions="bounce")
+    run = caught.value.trajectory
+    assert run.status is vv.Status.RESTING
+    assert run.final.t0 == pytest.approx(1.5, abs=1e-3)
+    # One such copy does not stop the others.
+    copies = scene.ensemble(position=[places, [*places[:2], [0.1, 3.0, 0.0]]])
+    many = copies.run(2.0, collisions="bounce")
+    assert many.status.tolist() == [int(vv.Status.RESTING), int(vv.Status.OK)]
+
+
+def test_a_ball_with_a_mass_turns_the_walls_back() -> None:
+    """Galperin: with masses M and m, π √(M/m) bounces off one wall and one block; here off two."""
+    places, speeds = [[-2.0, 0, 0], [2.0, 0, 0], [0.1, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [0.0, 0, 0]]
+    scene = spheres([1.0, 1.0, 1e-6], places, speeds, [0.3, 0.3, 0.2])
+    out = scene.run(4.0, collisions="bounce", record=("position", "velocity", "energy"))
+    assert out.status is vv.Status.OK
+    assert np.allclose(out.velocity[-1, :2, 0], [-1.0, 1.0], rtol=0.0, atol=1e-2)
+    assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-9)

@@ -8,10 +8,9 @@ import pytest
 
 import visviva as vv
 
-ON_A_SPRING = vv.Scene(
-    vv.RigidBody(1.0, moments=[0.1, 0.2, 0.25]),
-    vv.AttachedSpring(0, [0.3, 0.1, 0.2], stiffness=5000.0, length=1.0, anchor=[1.5, 0.0, 0.3]),
-)
+BODY = vv.RigidBody(1.0, moments=[0.1, 0.2, 0.25])
+SPRING = vv.AttachedSpring(0, [0.3, 0.1, 0.2], stiffness=5000.0, length=1.0, anchor=[1.5, 0.0, 0.3])
+ON_A_SPRING = vv.Scene(BODY, SPRING)
 PASSAGE = vv.Scene(
     vv.Particles([0.1], [[3.0, 0.3, 0.0]], [[-1.0, 0.0, 0.0]]),
     vv.RigidBody(10.0, moments=[2.0, 3.0, 4.0]),
@@ -85,7 +84,7 @@ def test_what_resolves_it_is_not_blamed() -> None:
         warnings.simplefilter("error")
         ON_A_SPRING.run(t=2.0, dt=0.001)
         vv.Scene(body, drag).run(t=10.0, dt=0.1, method="rk4")
-        vv.Scene(body, vv.AppliedTorque([0.0, 0.0, 5.0])).run(t=10.0, dt=0.1)
+        vv.Scene(BODY, vv.AppliedTorque([0.0, 0.0, 5.0])).run(t=10.0, dt=0.1)
         # At rest nothing is there to be compared with.
         vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5]), vv.AppliedTorque([0.0, 0.0, 0.0])).run(t=1.0, dt=0.1)
 
@@ -145,3 +144,40 @@ def test_bodies_that_end_in_one_place_are_no_error() -> None:
     )
     assert not np.isfinite(out.energy[-1])
     assert out.status is vv.Status.OK
+
+
+WEAK = {
+    "torque": vv.AppliedTorque([0.0, 0.0, 1e-9]),
+    "torque of the body": vv.AppliedTorque([0.0, 0.0, 1e-9], frame="body"),
+    "drag of spins": vv.RotationalDrag(1e-9),
+    "drag": vv.LinearDrag(tau=1e9),
+    "drive": vv.DrivenForce([1e-9, 0.0, 0.0], frequency=1.0),
+}
+
+
+@pytest.mark.parametrize("weak", WEAK)
+@pytest.mark.parametrize("method", ["leapfrog", "yoshida4", "rk4"])
+def test_weak_forces_that_keep_no_energy_do_not_silence_it(method: str, weak: str) -> None:
+    """Spins of 1e91 came with status OK and no word, as energies told nothing."""
+    if method != "rk4" and "drag" in weak:
+        pytest.skip("these methods take no drag")
+    scene = vv.Scene(BODY, SPRING, WEAK[weak])
+    with pytest.warns(
+        vv.AccuracyWarning, match=r"after .* is off by .* of itself: a step of dt = 0\.04 .* dt out"
+    ) as caught:
+        out = scene.run(t=[0.0, 0.5], method=method, dt=0.04)
+    assert out.status is vv.Status.OK
+    assert len(caught) == 1
+    scene.run(t=2.0, method=method, dt=0.002)
+    copies = scene.ensemble(velocity=[[[0.0, 0.0, 0.0]], [[0.1, 0.0, 0.0]]])
+    with pytest.warns(vv.AccuracyWarning, match=r"in copy [01], after") as caught:
+        copies.run(t=0.5, method=method, dt=0.04, threads=3)
+    assert len(caught) == 1
+
+
+def test_a_body_that_a_torque_turns_from_rest_is_not_blamed() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        vv.Scene(BODY, vv.AppliedTorque([0.0, 0.0, 1.0])).run(t=2.0, method="rk4", dt=0.1)
+        vv.Scene(BODY, vv.RotationalDrag(0.1)).run(t=2.0, method="rk4", dt=0.1)
+        vv.Scene(BODY, vv.UniformField([0.0, 0.0, -1.0]), vv.LinearDrag(tau=2.0)).run(t=2.0, method="rk4", dt=0.1)

@@ -111,7 +111,7 @@ def monte_carlo(
         by each worker and compared by their hashes. Each worker uses ``threads`` threads, or one.
     energy_spread : float or Spread, optional
         Of the projectiles' energies about `beam_energy`, or about each energy of a `Spectrum`; a number is the standard
-        deviation of a Gaussian, which ends at 6 of them. Angles are interpolated between tables of 3 to 9 energies,
+        deviation of a Gaussian, which ends at 6 of them. Angles are interpolated between tables of 3 to 17 energies,
         tried against direct quadrature to 4e-6 in sin²(ψ/2); where the deflection is not that smooth in the energy
         (orbiting, capture) the run is refused.
     divergence : float or Spread, optional

@@ -69,6 +69,8 @@ pub struct Passage {
 const SAMPLES: usize = 2048;
 /// Relative errors of integrals, if they can be had.
 const TOLERANCE: f64 = 1e-13;
+/// Distances this part of the way to a turning point apart are near: beyond, their variables differ by a digit less at most.
+const NEAR: f64 = 0.1;
 /// The rest of a logarithmic variable that is looked at.
 const FAR: f64 = 200.0;
 
@@ -252,12 +254,46 @@ impl<'a> Motion<'a> {
     /// # Errors
     /// As [`half_period`](Self::half_period).
     pub fn between(&self, from: f64, to: f64) -> Result<Passage> {
-        let at = |r: f64| self.variable(scale(r, -self.length));
-        let (a, b) = (at(from), at(to));
-        if a == b {
+        let [from, to] = [from, to].map(|r| scale(r, -self.length));
+        if from == to {
             return Ok(self.passage(Integral::default()));
         }
-        self.integral(a.min(b), a.max(b)).map(|integral| self.passage(integral)).ok_or_else(refused)
+        let integral = if self.are_near(from.min(to), from.max(to)) {
+            self.near_integral(from.min(to), from.max(to))
+        } else {
+            let (a, b) = (self.variable(from), self.variable(to));
+            self.integral(a.min(b), a.max(b))
+        };
+        integral.map(|integral| self.passage(integral)).ok_or_else(refused)
+    }
+
+    /// Whether two distances are so near each other, beside the turning points, that the difference of their variables has
+    /// lost digits.
+    fn are_near(&self, low: f64, high: f64) -> bool {
+        let above = |a: DoubleDouble| (DoubleDouble::from(low) - a).high();
+        let below = |b: DoubleDouble| (b - DoubleDouble::from(high)).high();
+        let room = match self.form {
+            Form::Between(a, b, _) => above(a).min(below(b)),
+            Form::Beyond(a) => above(a),
+            Form::Within(b) => below(b),
+            Form::Open(_) => low,
+        };
+        high - low < NEAR * room.min(low)
+    }
+
+    /// From one of two near distances to the other, in the distance itself.
+    fn near_integral(&self, low: f64, high: f64) -> Option<Integral> {
+        let rates = |past: f64| {
+            let r = DoubleDouble::from(low) + DoubleDouble::from(past);
+            let time = 1.0 / self.radial.kinetic(r).0.high().sqrt();
+            [time, self.turning * time / r.high() / r.high()]
+        };
+        let mut places = vec![0.0, high - low];
+        places.extend(
+            self.radial.field.breaks().into_iter().filter(|r| low < *r && *r < high).map(|r| r - low),
+        );
+        places.sort_by(f64::total_cmp);
+        between(&rates, &places, TOLERANCE)
     }
 
     /// The variable at both ends of the range, as far as numbers go.

@@ -373,9 +373,28 @@ pub fn conserved_by(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>
     all
 }
 
-/// Whether the energy of these bodies never grows by any of the forces.
-pub fn never_give_energy(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>) -> bool {
-    terms.iter().all(|term| !term.acts(bodies) || term.never_gives_energy())
+/// What becomes of the energy of bodies by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Energy {
+    /// It is constant.
+    Constant,
+    /// It never grows.
+    NeverGrows,
+    /// Forces give and take.
+    Unknown,
+}
+
+impl Energy {
+    /// Of these bodies under all the forces together.
+    pub fn under(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>) -> Self {
+        if conserved_by(terms, bodies).energy {
+            Self::Constant
+        } else if terms.iter().all(|term| !term.acts(bodies) || term.never_gives_energy()) {
+            Self::NeverGrows
+        } else {
+            Self::Unknown
+        }
+    }
 }
 
 /// Potential energy and Σ r·F of all the forces.

@@ -11,7 +11,7 @@ mod held;
 mod report;
 
 pub use events::Found;
-pub use halved::Unresolved;
+pub use halved::{Evidence, Unresolved};
 pub use report::{Counts, Ending, Report};
 
 use super::Scene;

@@ -35,7 +35,7 @@ use crate::forces::ForceTerm;
 use crate::forces::following::Leaders;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
-use crate::forces::term::Coupling;
+use crate::forces::term::{Coupling, Energy};
 use crate::ode::transformation::Transformation;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
@@ -119,6 +119,8 @@ pub struct Plan {
     quiet: Option<Quiet>,
     /// Its step, if that tells nothing of an orbit on which a body is at the start.
     pub too_long: Option<TooLong>,
+    /// What the energy of a copy does by itself.
+    pub energy: Energy,
     /// The time of the scene.
     pub t0: f64,
     /// The node that the run goes on from; 0 is the scene.
@@ -260,6 +262,8 @@ impl Plan {
             record: request.record.clone(),
             quiet: None,
             too_long: None,
+            // Members that run together have forces of one kind.
+            energy: Energy::under(&scene.forces, &scene.bodies()),
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),

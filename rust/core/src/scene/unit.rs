@@ -154,4 +154,9 @@ impl Prepared {
         }
         Ok(prepared)
     }
+
+    /// How its origin moves at the start, in its units.
+    pub fn drift(&self) -> [f64; 3] {
+        self.origin.drift.map(|v| scale(v, self.units.velocity()))
+    }
 }

@@ -195,10 +195,11 @@ pub(super) fn output_dict<'py>(
         dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
     }
     let doubts = outcomes.iter().enumerate().filter_map(|(copy, outcome)| Some((copy, outcome.unresolved?)));
-    if let (Some((copy, Unresolved { body, error, at_end })), Some(dt)) =
+    if let (Some((copy, Unresolved { body, error, by })), Some(dt)) =
         (doubts.max_by(|a, b| a.1.error.total_cmp(&b.1.error)), output.plan.dt)
     {
-        dict.set_item("unresolved", (copy, body, error, at_end, dt.abs(), output.plan.method.order))?;
+        let velocity = format!("the velocity of body {body}");
+        dict.set_item("unresolved", (copy, velocity, error, by.name(), dt.abs(), output.plan.method.order))?;
     }
     // Steps that are chosen for rigid bodies end where no two lengths of them agree.
     let chosen = output.plan.turning.steps() && output.plan.tolerance.is_some();
@@ -240,7 +241,7 @@ fn status(ending: &Ending) -> i8 {
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
         Ending::OutsideDomain => 6,
-        Ending::Resting { .. } => 7,
+        Ending::Resting { .. } | Ending::Squeezed { .. } => 7,
     }
 }
 
@@ -289,6 +290,14 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
             message: format!(
                 "bodies {i} and {j} came to rest on each other: spheres that bounce know no lasting contact (end the run \
                  before it, or let a soft repulsion hold them apart)"
+            ),
+            time,
+        }),
+        Ending::Squeezed { bodies: (i, j) } => Some(Error::Convergence {
+            message: format!(
+                "bodies {i} and {j}, one of which the other does not feel, met ever faster, ever sooner: between spheres \
+                 that come together it bounces infinitely often before they meet (end the run before it, give the light \
+                 one a mass that turns them back, or a restitution below 1)"
             ),
             time,
         }),

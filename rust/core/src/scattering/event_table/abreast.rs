@@ -19,9 +19,10 @@ pub struct TableAbreast {
     rows: Rows<ROW>,
 }
 
-/// Those of a range of energies, each with its energy and its weight.
+/// Those of a range of energies, each with what part of its energy the lowest is, and its weight.
 #[derive(Clone, Debug)]
 pub struct EnergiesAbreast {
+    low: f64,
     tables: Vec<(f64, f64, TableAbreast)>,
 }
 
@@ -62,15 +63,16 @@ impl EnergiesAbreast {
     /// Of those tables.
     pub fn new(energies: &Energies) -> Self {
         let of = |(node, weight, table): &(f64, f64, EventTable)| (*node, *weight, TableAbreast::new(table));
-        Self { tables: energies.tables.iter().map(of).collect() }
+        Self { low: energies.low, tables: energies.tables.iter().map(of).collect() }
     }
 
     /// ψ of these energies where b are these parts of b_max; no number at the energy of a table.
     #[inline(always)]
     pub fn angle<S: Functions + Lookup>(&self, energy: S, part: S) -> S {
+        let share = S::splat(self.low) / energy;
         let (mut over, mut under) = (S::zero(), S::zero());
         for (node, weight, table) in &self.tables {
-            let weight = S::splat(*weight) / (energy - S::splat(*node));
+            let weight = S::splat(*weight) / (share - S::splat(*node));
             over = weight.multiply_add(table.angle(part), over);
             under += weight;
         }

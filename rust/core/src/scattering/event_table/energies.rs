@@ -1,8 +1,9 @@
-//! The deflections of a range of energies: a few tables, and between them a polynomial in the energy.
+//! The deflections of a range of energies: a few tables, and between them a polynomial in the inverse of the energy.
 //!
 //! The one idea: where nothing orbits and nothing is captured ψ is smooth in the energy, and at one impact parameter the
-//! polynomial through Chebyshev points of the range has it. Whether that is so is not assumed but tried, as it is for one
-//! table: directly, at energies and impact parameters between those that it is made of.
+//! polynomial through Chebyshev points of the range has it. Taken in 1/E, in which ψ falls to zero as a series does, the
+//! points crowd where it changes most, towards the energies that orbit. Whether it is smooth enough is not assumed but
+//! tried, as it is for one table: directly, at energies and impact parameters between those that it is made of.
 
 use super::{EventTable, MOST_ERROR, Piece};
 use crate::numerics::angles::{cos, sin};
@@ -14,16 +15,18 @@ use crate::{Error, Result};
 use core::f64::consts::PI;
 
 /// How many tables: the first that does.
-const ORDERS: [usize; 3] = [3, 5, 9];
+const ORDERS: [usize; 4] = [3, 5, 9, 17];
 /// Bytes of all of them.
-const MOST_BYTES: usize = 1 << 19;
+const MOST_BYTES: usize = 1 << 20;
 /// Places at which the whole is tried.
 const CERTIFYING: u64 = 768;
 
 /// The deflections of a range of energies, b from 0 to b_max.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Energies {
-    /// Each with its energy and its weight in the barycentric formula.
+    /// The lowest energy.
+    pub(super) low: f64,
+    /// Each with what part of its energy that is, and its weight in the barycentric formula.
     pub(super) tables: Vec<(f64, f64, EventTable)>,
     error: f64,
 }
@@ -52,9 +55,10 @@ impl Energies {
         let mut why = String::new();
         for order in ORDERS {
             let last = (order - 1) as f64;
-            let energies: Vec<f64> = (0..order)
-                .map(|k| 0.5 * (low + high) - 0.5 * (high - low) * cos(PI * k as f64 / last))
-                .collect();
+            let least = low / high;
+            let shares =
+                (0..order).map(|k| 0.5 * (1.0 + least) + 0.5 * (1.0 - least) * cos(PI * k as f64 / last));
+            let energies: Vec<f64> = shares.map(|share| (low / share).clamp(low, high)).collect();
             let tables = for_chunks(threads, order, ticker, |k, ticker| {
                 EventTable::build(deflector, energies[k], b_max, 1, ticker)
             })?;
@@ -70,8 +74,9 @@ impl Energies {
                 let size = if k == 0 || k + 1 == order { 0.5 } else { 1.0 };
                 if k.is_multiple_of(2) { size } else { -size }
             };
-            let tables = tables.into_iter().enumerate().map(|(k, table)| (energies[k], weight(k), table));
-            let mut made = Self { tables: tables.collect(), error: 0.0 };
+            let tables =
+                tables.into_iter().enumerate().map(|(k, table)| (low / energies[k], weight(k), table));
+            let mut made = Self { low, tables: tables.collect(), error: 0.0 };
             let (error, energy, b) = made.tried(deflector, [low, high], b_max, threads, ticker)?;
             if error <= MOST_ERROR {
                 made.error = error;
@@ -84,13 +89,14 @@ impl Energies {
     }
     /// ψ of an energy of the range where b is this part of b_max, signed and not folded.
     pub fn angle(&self, energy: f64, part: f64) -> Option<f64> {
+        let share = self.low / energy;
         let (mut over, mut under) = (0.0, 0.0);
         for (node, weight, table) in &self.tables {
             let angle = table.angle(part)?;
-            if energy == *node {
+            if share == *node {
                 return Some(angle);
             }
-            let weight = weight / (energy - node);
+            let weight = weight / (share - node);
             over += weight * angle;
             under += weight;
         }

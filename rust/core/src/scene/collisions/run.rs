@@ -2,6 +2,7 @@
 
 mod leg;
 mod member;
+mod squeezed;
 mod start;
 
 use super::{Collisions, Table, contact, may_touch};

@@ -146,11 +146,12 @@ fn lockstep(
     let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() - repeated };
     let ended = place(&job.end()).past.is_none() || records.last.is_none();
     let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
-    if stands && halved::pays(job, steps) {
-        halved::look(job, &records.units, (&mut reports, state, node), &mut dynamics, ticker)?;
-    }
     if job.keeps && stands && ended && node > 0 {
         held::leave(plan.method, &records.units, &mut reports, node, state, &mut **stepper);
+    }
+    if stands && halved::pays(job, steps) {
+        let reached = (&mut reports[..], &*state, node);
+        halved::look(job, &records.units, reached, &mut **stepper, &mut dynamics, ticker)?;
     }
     Ok(reports)
 }

@@ -1,9 +1,14 @@
 //! Whether equal steps resolve the motion: a step at the start and one at the end, each against two of half its length.
 //!
 //! The one idea: where the energy tells nothing, the method does. Drag that takes more than all of a velocity in a step,
-//! massless bodies, which have no energy, and states in which only the method comes to rest (of a stiff spring, under drag)
-//! have in common that half of the step leads elsewhere. Of Runge-Kutta methods, which come to rest where forces do not let
-//! them (Iserles, Peplow & Stuart, SIAM J. Numer. Anal. 28 (1991) 1723); splittings never do, and energies tell of them.
+//! massless bodies, which have no energy, forces of the time, which give any, and states in which only the method comes to
+//! rest (of a stiff spring, under drag) have in common that half of the step leads elsewhere. Runge-Kutta methods come to
+//! rest where forces do not let them (Iserles, Peplow & Stuart, SIAM J. Numer. Anal. 28 (1991) 1723); splittings never do,
+//! and what energies tell of them is enough.
+//!
+//! Two things are no matter of a step. A multistep method may be unstable where the one-step method that starts it is not:
+//! at the end it is compared with that. And of a drive with less than two steps to a period any two steps may see the same
+//! force: it is asked what that, taken for constant, would have made of the velocity.
 
 use super::super::distance;
 use super::super::unit::Prepared;
@@ -11,18 +16,22 @@ use super::report::{Ending, Report};
 use super::{Job, Result, fixed};
 use crate::error::Error;
 use crate::forces::Dynamics;
+use crate::forces::term::Energy;
 use crate::numerics::lanes::Lanes;
 use crate::ode::Scheme;
 use crate::ode::state::State;
-use crate::ode::stepper::stepper;
+use crate::ode::stepper::{Stepper, stepper};
 use crate::parallel::Ticker;
+use core::f64::consts::PI;
 
 /// A velocity that is off by this part of itself after one step tells nothing. Oscillations come to that with seven steps to
 /// a period by Euler's method, and with three by `rk4`; decays with 0.9 and with 2 times of decay to a step.
 const TOLERATED: f64 = 0.2;
 
-/// What a body moves in a step, as a part of its place, may be the rounding of forces that cancel below this.
+/// What a body moves in a step, as a part of its place, may be the rounding of forces that cancel below this, …
 const ROUNDING: f64 = 1e-9;
+/// … and as a part of the farthest place of all.
+const ROUNDING_OF_ALL: f64 = 1e-12;
 
 /// Six steps more are nothing beside so many.
 const MANY_STEPS: u64 = 1_000;
@@ -36,8 +45,30 @@ pub struct Unresolved {
     pub body: usize,
     /// How far its velocity is off, as a part of it.
     pub error: f64,
-    /// Whether it is the step that would follow on the last, and not the first.
-    pub at_end: bool,
+    /// What tells.
+    pub by: Evidence,
+}
+
+/// What tells that a step does not resolve a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// The first step.
+    FirstStep,
+    /// The one that would follow on the last.
+    StepFromTheEnd,
+    /// A drive with less than two steps to a period.
+    Drive,
+}
+
+impl Evidence {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FirstStep => "first_step",
+            Self::StepFromTheEnd => "step_from_the_end",
+            Self::Drive => "drive",
+        }
+    }
 }
 
 impl Unresolved {
@@ -47,17 +78,20 @@ impl Unresolved {
     }
 }
 
-/// Whether it is looked for in a run of so many steps.
+/// Whether it is looked for in a run of so many steps: where energies do not tell, or not everything.
 pub(super) fn pays(job: &Job<'_>, steps: u64) -> bool {
     let plan = job.plan;
     let each = job.scene.particles as u64 + plan.pairs_per_evaluation();
     let few = each.saturating_mul(job.scene.copies as u64) <= FEW;
     let comes_to_rest = matches!(plan.method.scheme, Scheme::RungeKutta(_));
+    let untold = plan.energy == Energy::Unknown || job.scene.masses(0).contains(&0.0);
     // A leg between two collisions is no run.
-    comes_to_rest && !plan.touching && !plan.turning.steps() && steps > 0 && (few || steps >= MANY_STEPS)
+    let is_run = !plan.touching && !plan.turning.steps() && steps > 0;
+    is_run && (comes_to_rest || untold) && (few || steps >= MANY_STEPS)
 }
 
-/// Tells in the reports of units that have come to the end, in the state `end` at `node`, what does not resolve them.
+/// Tells in the reports of units that have come to the end, in the state `end` at `node`, what does not resolve them. The
+/// method is there, too, and is taken on.
 ///
 /// # Errors
 /// Only errors of the library itself.
@@ -65,42 +99,75 @@ pub(super) fn look(
     job: &Job<'_>,
     units: &[Prepared],
     (reports, end, node): (&mut [Report], &State<Lanes>, u64),
+    method: &mut dyn Stepper<Lanes>,
     dynamics: &mut Dynamics<Lanes>,
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     if reports.iter().all(|report| report.ending != Ending::Finished) {
         return Ok(());
     }
-    // What goes on from a node of an earlier run was looked at when that began.
-    let start = job.from.is_none().then(|| {
-        let mut start = end.clone();
-        fixed::lay(job.plan, units, &mut start);
-        start
-    });
-    let steps = [start.as_ref().map(|start| (start, 0, false)), Some((end, node, true))];
-    for (before, node, at_end) in steps.into_iter().flatten() {
-        let [whole, halves] = match both(job, before, node, dynamics, ticker) {
-            Ok(states) => states,
-            // Who wants to stop does not wait for this.
-            Err(Error::Interrupted) => return Ok(()),
-            Err(other) => return Err(other),
-        };
-        for (lane, (unit, report)) in units.iter().zip(&mut *reports).enumerate() {
-            let finished = report.ending == Ending::Finished;
-            for slot in unit.unit.recorded.clone().filter(|_| finished) {
-                let error = error(unit, (slot, lane), before, [&whole, &halves], job.step());
-                if error > TOLERATED {
-                    let doubt = Unresolved { body: unit.unit.bodies[slot], error, at_end };
-                    report.unresolved = Unresolved::worse(report.unresolved, Some(doubt));
+    match pairs(job, units, (end, node), method, dynamics, ticker) {
+        Ok(pairs) => {
+            let finished = units.iter().zip(reports).enumerate();
+            let finished = finished.filter(|(_, (_, report))| report.ending == Ending::Finished);
+            for (lane, (unit, report)) in finished {
+                for slot in unit.unit.recorded.clone() {
+                    let by_pairs =
+                        pairs.iter().map(|pair| (pair.error(unit, (slot, lane), end, job.step()), pair.by));
+                    let by_drive =
+                        (by_drives(job, unit, (slot, lane), end, report.counts.steps), Evidence::Drive);
+                    for (error, by) in by_pairs.chain([by_drive]).filter(|&(error, _)| error > TOLERATED) {
+                        let doubt = Unresolved { body: unit.unit.bodies[slot], error, by };
+                        report.unresolved = Unresolved::worse(report.unresolved, Some(doubt));
+                    }
                 }
             }
+            Ok(())
         }
+        // Who wants to stop does not wait for this.
+        Err(Error::Interrupted) => Ok(()),
+        Err(other) => Err(other),
     }
-    Ok(())
+}
+
+/// Two ways from one state over the time of a step, which lead to the same if it resolves the motion.
+struct Pair {
+    by: Evidence,
+    before: State<Lanes>,
+    after: [State<Lanes>; 2],
+}
+
+/// Those that are looked at in a run.
+fn pairs(
+    job: &Job<'_>,
+    units: &[Prepared],
+    (end, node): (&State<Lanes>, u64),
+    method: &mut dyn Stepper<Lanes>,
+    dynamics: &mut Dynamics<Lanes>,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Pair>> {
+    let mut pairs = Vec::new();
+    // What goes on from a node of an earlier run was looked at when that began.
+    if job.from.is_none() {
+        let mut start = end.clone();
+        fixed::lay(job.plan, units, &mut start);
+        let after = halved(job, &start, 0, dynamics, ticker)?;
+        pairs.push(Pair { by: Evidence::FirstStep, before: start, after });
+    }
+    let after = halved(job, end, node, dynamics, ticker)?;
+    pairs.push(Pair { by: Evidence::StepFromTheEnd, before: end.clone(), after });
+    if matches!(job.plan.method.scheme, Scheme::Multistep(_)) {
+        let [mut own, mut begun] = [end.clone(), end.clone()];
+        method.between(node, job.step(), &mut begun, dynamics, ticker)?;
+        let _one = method.step(node, 1, &mut own, dynamics, ticker)?;
+        method.settle(&mut own);
+        pairs.push(Pair { by: Evidence::StepFromTheEnd, before: end.clone(), after: [own, begun] });
+    }
+    Ok(pairs)
 }
 
 /// The states to which one step leads, and two of half its length.
-fn both(
+fn halved(
     job: &Job<'_>,
     before: &State<Lanes>,
     node: u64,
@@ -111,28 +178,66 @@ fn both(
     let mut step = stepper(job.plan.method, job.step(), dynamics, before)?;
     let mut half = stepper(job.plan.method, 0.5 * job.step(), dynamics, before)?;
     let _one = step.step(node, 1, &mut whole, dynamics, ticker)?;
+    step.settle(&mut whole);
     for part in 0..2 {
         let _one = half.step(2 * node + part, 1, &mut halves, dynamics, ticker)?;
     }
+    half.settle(&mut halves);
     Ok([whole, halves])
 }
 
-/// How far the velocity of a body is off after a step, as a part of the largest on the way.
-fn error(
+impl Pair {
+    /// How far apart they are in the velocity of a body, as a part of the largest on the way, which at the start is that of
+    /// all the run: what is lost in a step of a body that is hardly moving yet is nothing beside what it gains.
+    fn error(&self, unit: &Prepared, (slot, lane): (usize, usize), end: &State<Lanes>, step: f64) -> f64 {
+        let velocity = |state: &State<Lanes>| unit.pick(slot, state.v(), lane);
+        let [one, other] = [&self.after[0], &self.after[1]].map(velocity);
+        if one.iter().any(|x| !x.is_finite()) {
+            return f64::INFINITY;
+        }
+        let off = distance(one, other);
+        let speeds = [velocity(&self.before), one, other, velocity(end)].map(|v| speed(unit, v));
+        let largest = speeds.into_iter().fold(0.0, f64::max);
+        let place = |slot: usize| {
+            let places = [&self.before, &self.after[0]].map(|state| size(unit.place(slot, state, lane)));
+            places[0].max(places[1])
+        };
+        let farthest = (0..unit.unit.bodies.len()).map(place).fold(0.0, f64::max);
+        let known = (ROUNDING * place(slot)).max(ROUNDING_OF_ALL * farthest);
+        if off * step.abs() > known { off / largest } else { 0.0 }
+    }
+}
+
+/// What drives with less than two steps to a period make of a velocity at most, as a part of it.
+fn by_drives(
+    job: &Job<'_>,
     unit: &Prepared,
     (slot, lane): (usize, usize),
-    before: &State<Lanes>,
-    after: [&State<Lanes>; 2],
-    step: f64,
+    end: &State<Lanes>,
+    steps: u64,
 ) -> f64 {
-    let size = |x: [f64; 3]| distance(x, [0.0; 3]);
-    let velocity = |state: &State<Lanes>| unit.pick(slot, state.v(), lane);
-    let place = |state: &State<Lanes>| size(unit.place(slot, state, lane));
-    let [whole, halves] = after.map(velocity);
-    if whole.iter().any(|x| !x.is_finite()) {
-        return f64::INFINITY;
+    let (copy, body) = (unit.unit.copy, unit.unit.bodies[slot]);
+    let dt = job.plan.dt.map_or(0.0, f64::abs);
+    let drives = job.scene.forces_of(copy).iter().filter_map(|force| force.as_driven());
+    let unseen = drives.filter(|drive| drive.frequency.abs() * dt > PI);
+    let force: f64 = unseen.map(|drive| size(drive.amplitude)).sum();
+    if force == 0.0 {
+        return 0.0;
     }
-    let off = distance(whole, halves);
-    let largest = size(velocity(before)).max(size(whole)).max(size(halves));
-    if off * step.abs() > ROUNDING * place(before).max(place(after[1])) { off / largest } else { 0.0 }
+    let gained = force / job.scene.masses(copy)[body] * dt * steps as f64;
+    let gained = job.plan.units.take(gained, [1, 0, -1]);
+    gained / gained.max(speed(unit, unit.pick(slot, end.v(), lane)))
+}
+
+/// How fast a body is: among others, beside them; alone, in the scene, and not beside the origin that goes along with it.
+fn speed(unit: &Prepared, velocity: [f64; 3]) -> f64 {
+    if unit.unit.bodies.len() > 1 {
+        return size(velocity);
+    }
+    let drift = unit.drift();
+    size(core::array::from_fn(|c| velocity[c] + drift[c]))
+}
+
+fn size(x: [f64; 3]) -> f64 {
+    distance(x, [0.0; 3])
 }

@@ -41,6 +41,11 @@ pub enum Ending {
         /// Which.
         bodies: (usize, usize),
     },
+    /// One bounces ever faster between others that come together.
+    Squeezed {
+        /// That, and the one that it met last.
+        bodies: (usize, usize),
+    },
 }
 
 /// What an integration cost.

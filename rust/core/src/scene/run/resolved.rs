@@ -12,15 +12,15 @@ use super::{Outcome, Part, Reached};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::term::{conserved_by, never_give_energy, potential_and_virial};
+use crate::forces::term::{Energy, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::units::Units;
 
 /// A sum over so few pairs is nothing beside a run.
-const FEW_PAIRS: u64 = 100;
-/// The sums over pairs at both ends take as long as five evaluations of the forces: about a hundredth of so many.
-const MANY_EVALUATIONS: u64 = 400;
+const FEW_PAIRS: u64 = 500;
+/// The sums over pairs at both ends take as long as five evaluations of the forces: a few hundredths of so many.
+const MANY_EVALUATIONS: u64 = 200;
 /// More massive bodies are not looked at.
 const MOST: usize = 2_000;
 
@@ -44,10 +44,7 @@ pub(super) fn look(
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     let (scene, plan) = (part.scene, part.plan);
-    // Members that run together have forces of one kind.
-    let conserved = conserved_by(&scene.forces, &scene.bodies()).energy;
-    let told = conserved || never_give_energy(&scene.forces, &scene.bodies());
-    if !told || plan.active.len() > MOST || request.times.is_empty() {
+    if plan.energy == Energy::Unknown || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
     let pairs = plan.pairs_per_evaluation();
@@ -55,7 +52,9 @@ pub(super) fn look(
     for copy in 0..scene.copies {
         let member = part.member(copy);
         let outcome = &mut outcomes[member];
-        let cheap = pairs <= FEW_PAIRS || outcome.counts.evaluations >= MANY_EVALUATIONS;
+        let many = outcome.counts.evaluations >= MANY_EVALUATIONS;
+        // Who asks for energies pays for such sums.
+        let cheap = pairs <= FEW_PAIRS || many || request.records("energy");
         if outcome.ending != Ending::Finished || !cheap {
             continue;
         }
@@ -78,7 +77,11 @@ pub(super) fn look(
             let error = |whole| {
                 let change = change.over(whole).to_f64();
                 // Backward in time what is taken comes back.
-                if conserved { change.abs() } else { (plan.direction * change).max(0.0) }
+                if plan.energy == Energy::Constant {
+                    change.abs()
+                } else {
+                    (plan.direction * change).max(0.0)
+                }
             };
             outcome.energy_error = error(whole);
             let begins_with_nothing = kinetic.plus(absolute(potential)).value().high() == 0.0;

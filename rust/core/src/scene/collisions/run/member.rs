@@ -2,6 +2,7 @@
 
 use super::super::{Collision, Collisions, Impact};
 use super::leg::Leg;
+use super::squeezed::Squeezed;
 use super::start::{bodies_of, part_of};
 use super::wanted;
 use crate::error::{Error, Result};
@@ -47,6 +48,7 @@ pub(super) struct Member {
     copy: usize,
     rule: Collisions,
     met: BTreeMap<(usize, usize), Met>,
+    squeezed: Squeezed,
     /// How often each event was found.
     found: Vec<u64>,
 }
@@ -73,6 +75,7 @@ impl Member {
             copy,
             rule,
             met: BTreeMap::new(),
+            squeezed: Squeezed::default(),
             found: vec![0; request.events.len()],
         };
         let mut touching = member.bodies.touching();
@@ -249,7 +252,12 @@ impl Member {
             }
             for (collision, speed) in self.bodies.bounce_together(&pairs, restitution, t) {
                 let (pair, met_with) = (collision.bodies, collision.speed);
+                let squeezed = self.squeezed.note(&self.bodies, &collision);
                 self.put(collision);
+                if squeezed {
+                    self.outcome.ending = Ending::Squeezed { bodies: pair };
+                    return false;
+                }
                 if found.take_if(|found| *found == pair).is_none() {
                     let rests = self.met.get(&pair).map_or(0, |met| met.rests);
                     let _ = self.met.insert(pair, Met { t, speed, rests });
