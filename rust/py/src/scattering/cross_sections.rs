@@ -27,7 +27,7 @@ pub(crate) fn scattering_structure(
 ) -> PyResult<Marks> {
     let potential = described_potential(description)?;
     compute(py, 0, None, |ticker| {
-        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         let rainbows = structure.rainbows().iter().map(|mark| (mark.impact_parameter, mark.angle)).collect();
         let glories = structure.glories(ticker)?;
@@ -75,7 +75,7 @@ pub(crate) fn scattering_branches<'py>(
     let potential = described_potential(description)?;
     let (angle, _) = copied("angle", &angle, [None])?;
     let (counts, columns) = compute(py, 0, None, |ticker| {
-        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         let mut counts = Vec::with_capacity(angle.len());
         let mut columns: [Vec<f64>; 4] = Default::default();
@@ -113,7 +113,7 @@ pub(crate) fn differential_cross_section<'py>(
     let potential = described_potential(description)?;
     let (angle, shape) = copied("angle", &angle, [None])?;
     let found = compute(py, 0, None, |ticker| {
-        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         let collision = Collision::new(mass_ratio, 1.0)?;
         let one = |angle: &f64| match frame {
@@ -138,7 +138,7 @@ pub(crate) fn beyond_angle<'py>(
     let potential = described_potential(description)?;
     let (angle, shape) = copied("angle", &angle, [None])?;
     let areas = compute(py, 0, None, |ticker| {
-        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         angle.iter().map(|angle| structure.beyond(*angle, ticker)).collect::<visviva_core::Result<Vec<f64>>>()
     })?

@@ -18,12 +18,14 @@ pub use transport::transport;
 
 use super::deflection::{Deflection, Deflector, Edge, Status};
 use crate::Result;
-use crate::numerics::elementary::Exponential;
+use crate::numerics::elementary::{Exponential, ln};
 use crate::parallel::Ticker;
 use core::f64::consts::{LN_2, PI};
 
 /// Octaves of impact parameters on either side of the potential's length at the energy.
 const OCTAVES: i32 = 24;
+/// So many, at least, beyond another length that matters.
+const BEYOND: i32 = 8;
 /// Samples to an octave.
 const PER_OCTAVE: i32 = 12;
 /// Samples towards an edge, each this much nearer than the one before.
@@ -158,7 +160,8 @@ impl<'a> Structure<'a> {
     }
     /// Samples between two edges, cut where the derivative changes its sign.
     fn cut(&mut self, ends: [f64; 2], ticker: &mut Ticker<'_>) -> Result<()> {
-        let places = places(ends, &self.edges, &self.bends, self.length);
+        let places =
+            places(ends, &self.edges, &self.bends, (self.length, self.deflector.lengths(self.energy)));
         let looked_from = self.bends.last().copied().unwrap_or(0.0).max(4.0 * self.length);
         let energies = vec![self.energy; places.len()];
         let found = self.deflector.deflect(&energies, &places, true, 1, ticker)?;
@@ -269,9 +272,12 @@ fn false_position(places: [f64; 2], values: [f64; 2]) -> f64 {
 }
 
 /// Impact parameters to look at between two ends: to every octave, ever nearer to orbits, and about features.
-fn places(ends: [f64; 2], edges: &[Edge], bends: &[f64], length: f64) -> Vec<f64> {
+fn places(ends: [f64; 2], edges: &[Edge], bends: &[f64], (length, lengths): (f64, [f64; 2])) -> Vec<f64> {
     let [low, high] = ends;
-    let octaves = (-OCTAVES * PER_OCTAVE..=OCTAVES * PER_OCTAVE)
+    let [nearer, farther] = lengths.map(|other| (ln(other / length) / LN_2) as i32);
+    let first = (nearer - BEYOND).min(-OCTAVES);
+    let last = (farther + BEYOND).max(OCTAVES);
+    let octaves = (first * PER_OCTAVE..=last * PER_OCTAVE)
         .map(|k| length * Exponential::exp(f64::from(k) * LN_2 / f64::from(PER_OCTAVE)));
     let mut places: Vec<f64> = octaves.filter(|b| *b > low && *b < high).collect();
     let orbits = |b: f64| edges.iter().any(|edge| edge.impact_parameter == b);

@@ -22,6 +22,8 @@ const TOLERANCE: f64 = 1e-10;
 /// How near to an edge and how far out intervals go, as exponents of e.
 const NEAREST: f64 = 26.0;
 const FARTHEST: f64 = 40.0;
+/// From another length that matters they go at least so far.
+const HALF_WAY: f64 = 20.0;
 /// Intervals are no longer than this at first.
 pub(super) const LONGEST: f64 = 2.0;
 
@@ -126,6 +128,8 @@ pub(super) fn transport_to(
              or cut the impact parameters and integrate deflect() up to there",
         ));
     }
+    let near = deflector.near(energy);
+    let deflector = near.as_ref().unwrap_or(deflector);
     let edges = deflector.edges(energy);
     if let Some(edge) = edges.iter().find(|edge| edge.captures) {
         return Err(Error::invalid(
@@ -214,7 +218,8 @@ fn outermost(deflector: &Deflector, energy: f64, edges: &[Edge]) -> [f64; 2] {
     let length = deflector.length(energy);
     let last = edges.iter().map(|edge| edge.impact_parameter).fold(0.0, f64::max);
     let from = ln((last + length) / length);
-    [from, from + FARTHEST]
+    let [_, settled] = deflector.lengths(energy);
+    [from, from.max(ln(settled / length) - HALF_WAY) + FARTHEST]
 }
 
 /// Intervals between edges, towards them and far out.
@@ -252,7 +257,8 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
             let most = ln(middle - low);
             add(Way::Near(low, 1.0), nearest(low, most), most);
         } else if high == f64::INFINITY {
-            add(Way::Far(length), -FARTHEST, 0.0);
+            let [reach, _] = deflector.lengths(energy);
+            add(Way::Far(length), (ln(reach / length) + HALF_WAY).min(0.0) - FARTHEST, 0.0);
         } else {
             add(Way::Straight, 0.0, middle);
         }

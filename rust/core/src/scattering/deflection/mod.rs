@@ -14,6 +14,7 @@ mod delay_tail;
 mod grid;
 mod head_on;
 mod integrands;
+mod moved;
 mod nodes;
 mod pack;
 mod pairs;
@@ -152,6 +153,14 @@ impl Deflector {
         }
         Ok(Self { profile, closed, tolerance: tolerance.max(FINEST), refined: true })
     }
+    /// The same for one energy.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn at_energy(potential: &Arc<dyn Potential>, tolerance: f64, energy: f64) -> Result<Self> {
+        let made = Self::new(potential, tolerance)?;
+        Ok(made.near(energy).unwrap_or(made))
+    }
     /// The same for the places of a table, which need no more beside a barrier than rounding leaves.
     ///
     /// # Errors
@@ -206,6 +215,17 @@ impl Deflector {
         // Of no potential at all, and where a quotient leaves the range of numbers.
         if length.is_normal() { length } else { 1.0 }
     }
+    /// Between which lengths the impact parameters of an energy matter: the one within which |V| is more than it, or that of
+    /// [`length`](Self::length), and the one from which on V is a power of the distance, if that is farther.
+    pub(in crate::scattering) fn lengths(&self, energy: f64) -> [f64; 2] {
+        let length = self.length(energy);
+        let normal = |r: f64| if r.is_normal() { r } else { length };
+        let found = self.profile.as_ref().filter(|_| self.closed.is_none());
+        found.map_or([length; 2], |profile| {
+            let (reach, settled) = (normal(profile.reach_at(energy)), normal(profile.power_begins()));
+            [reach.min(length), settled.max(length)]
+        })
+    }
     /// The deflections of pairs; derivatives and delays (else NaN) only if `all`. The bits of a pair do not depend on
     /// the others, nor on the number of threads.
     ///
@@ -249,7 +269,25 @@ impl Deflector {
         self.collected(energy, b, (false, true), |found| found.angle, threads, ticker)
     }
 
-    fn collected<T: Send>(
+    fn collected<T: Send + Copy>(
+        &self,
+        energy: &[f64],
+        b: &[f64],
+        how: (bool, bool),
+        take: fn(&Deflection) -> T,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<T>> {
+        let by = |deflector: &Self, energy: &[f64], b: &[f64], ticker: &mut Ticker<'_>| {
+            deflector.collected_here(energy, b, how, take, threads, ticker)
+        };
+        match self.by_near_ones((energy, b), by, ticker)? {
+            Some(found) => Ok(found),
+            None => by(self, energy, b, ticker),
+        }
+    }
+
+    fn collected_here<T: Send>(
         &self,
         energy: &[f64],
         b: &[f64],

@@ -7,6 +7,7 @@
 use super::grid::{Grid, POINTS, place, radius};
 use super::rim::Rim;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elementary::{Exponential, ln};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
@@ -43,6 +44,9 @@ pub(super) enum Center {
 /// A potential and its grid.
 #[derive(Debug)]
 pub(super) struct Profile {
+    /// In the caller's units, …
+    given: Arc<dyn Potential>,
+    /// … and in its own.
     potential: Arc<dyn Potential>,
     /// Exponents of the units of length and energy.
     length: i32,
@@ -74,6 +78,10 @@ impl Profile {
     pub(super) fn new(potential: &Arc<dyn Potential>) -> Self {
         let own = potential.own_length().map(exponent);
         let length = own.unwrap_or_else(|| unit_of_length(potential.as_ref()));
+        Self::in_unit(potential, length, own.is_some())
+    }
+    /// In a unit of length, by its exponent, and whether that is the potential's own.
+    fn in_unit(potential: &Arc<dyn Potential>, length: i32, has_length: bool) -> Self {
         let (scaled, energy) = potential.near_one(length).unwrap_or_else(|| (Arc::clone(potential), 0));
         let domain = scaled.domain().map_or([0.0, f64::INFINITY], |(first, last)| [first, last]);
         let inside = [
@@ -96,9 +104,10 @@ impl Profile {
         let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside, &between);
         let repels = breaks.is_empty() && grid.repels;
         let mut made = Self {
+            given: Arc::clone(potential),
             potential: scaled,
             length,
-            has_length: own.is_some(),
+            has_length,
             energy,
             grid,
             repels,
@@ -160,11 +169,27 @@ impl Profile {
     /// The length by which impact parameters of an energy are looked for, in the caller's units: the potential's own or, if
     /// it has none, the distance within which |V| is more than the energy.
     pub(super) fn length_at(&self, energy: f64) -> f64 {
-        if self.has_length {
-            return self.give_length(1.0);
-        }
+        if self.has_length { self.give_length(1.0) } else { self.reach_at(energy) }
+    }
+    /// The distance within which |V| is more than an energy, in the caller's units; the unit of length where it never is.
+    pub(super) fn reach_at(&self, energy: f64) -> f64 {
         let energy = self.take_energy(energy).abs();
-        self.give_length(self.grid.outermost(energy).map_or(1.0, radius))
+        let reach = match (self.grid.outermost(energy), self.center) {
+            (Some(last), _) if last == POINTS - 1 => {
+                let r = radius(last);
+                r * Exponential::exp(ln(self.grid.value[last].abs() / energy) / self.power_at(r))
+            }
+            (Some(at), _) => radius(at),
+            (None, Center::Open(_)) => 1.0,
+            (None, _) if self.domain[0] > 0.0 => 1.0,
+            (None, _) => self.grid.reach(energy, self.power_at(radius(0))),
+        };
+        self.give_length(reach)
+    }
+    /// From where on V is a power of the distance, in the caller's units; the unit of length where it is none, or not on the
+    /// grid.
+    pub(super) fn power_begins(&self) -> f64 {
+        self.give_length(if self.power_from < f64::INFINITY { self.power_from } else { 1.0 })
     }
     /// An energy of these units, from one of the caller's.
     #[inline]

@@ -3,7 +3,7 @@
 //! The one idea: the extrema of U are known, so where h turns is a bracketed root; where it rises, the place on the grid is
 //! found by halving, and beyond the grid by octaves.
 
-use super::super::grid::{place, radius};
+use super::super::grid::{POINTS, place, radius};
 use super::super::search::bisected;
 use super::Profile;
 
@@ -80,6 +80,17 @@ impl Profile {
                 low = twice
             }
             steps += 1;
+        }
+        // Far from the grid both may be known, many octaves apart.
+        if low < radius(0) || high > radius(POINTS - 1) {
+            while low > 0.0 && high > 4.0 * low && high < f64::INFINITY {
+                let middle = low.sqrt() * high.sqrt();
+                if Self::reached(middle, self.value(middle), energy, b) {
+                    high = middle
+                } else {
+                    low = middle
+                }
+            }
         }
         (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }

@@ -6,10 +6,14 @@
 use super::super::grid::radius;
 use super::super::search::highest;
 use super::{Center, Profile};
+use crate::numerics::power_of_two::{exponent, power_of_two};
 
 /// How far below an energy U is taken to touch it, as a part of what it is the sum of. By so little it makes no difference
 /// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
 const TOUCHES: f64 = 16.0 * f64::EPSILON;
+
+/// The power of two of the farthest distance, or the nearest.
+const FARTHEST: i32 = 1000;
 
 /// By how much of V and r dV/dr U must change to have an extremum.
 const SAME_U: f64 = 1e-9;
@@ -65,7 +69,27 @@ impl Profile {
         if let Some(&[high, above, _]) = places.last().filter(|_| places.len() > 1) {
             found.push([high, above]);
         }
+        // Energies far from those on the grid orbit, and turn, far from it: from its ends on U goes as far as numbers do.
+        if self.domain[0] == 0.0 && self.potential.singular() {
+            found[0] = self.farthest(found[0], -FARTHEST);
+        }
+        if let Some(last) = found.last_mut().filter(|_| rim == f64::INFINITY) {
+            *last = self.farthest(*last, FARTHEST);
+        }
         found
+    }
+    /// The place farthest from one, on the way to a power of two, at which U is a number, and U there.
+    fn farthest(&self, from: [f64; 2], towards: i32) -> [f64; 2] {
+        let at = |power: i32| [power_of_two(power), self.circular_energy(power_of_two(power))];
+        let (mut near, mut far) = (exponent(from[0]), towards);
+        if at(far)[1].is_finite() {
+            return at(far);
+        }
+        while (far - near).abs() > 1 {
+            let middle = near + (far - near) / 2;
+            if at(middle)[1].is_finite() { near = middle } else { far = middle }
+        }
+        if near == exponent(from[0]) { from } else { at(near) }
     }
     /// How V goes on inward of the grid.
     pub(super) fn find_center(&self) -> Center {

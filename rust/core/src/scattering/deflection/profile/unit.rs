@@ -1,5 +1,7 @@
 //! The unit of length of a potential that has none of its own.
 
+use super::super::grid::{place, radius};
+use super::Profile;
 use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::potentials::Potential;
 
@@ -28,4 +30,29 @@ pub(super) fn unit_of_length(potential: &dyn Potential) -> i32 {
     // caller's unit than it takes.
     let told = place.abs() > IN_THE_MIDDLE && place.abs() < MOST_OCTAVES - IN_THE_MIDDLE;
     if told { place - IN_THE_MIDDLE * place.signum() } else { 0 }
+}
+
+/// Energies whose lengths differ by less share a unit.
+const SHARED: f64 = 32.0;
+
+impl Profile {
+    /// By how many octaves the unit of length is to be moved for an energy: of a power of the distance, which is the same in
+    /// any, so that none of its numbers leaves the range where all that happens does not.
+    pub(in super::super) fn octaves_to(&self, energy: f64) -> i32 {
+        if !self.is_power() {
+            return 0;
+        }
+        let one = place(1.0);
+        let (strength, pull) = (self.grid.value[one], self.grid.pull[one]);
+        let octaves = exponent(strength) - exponent(self.take_energy(energy));
+        (SHARED * (f64::from(octaves) / (pull / strength) / SHARED).round()) as i32
+    }
+    /// Whether it is a power of the distance, which has no unit of its own.
+    pub(in super::super) fn is_power(&self) -> bool {
+        !self.has_length && self.power_from <= radius(0)
+    }
+    /// The same with a unit of length so many octaves larger.
+    pub(in super::super) fn moved(&self, octaves: i32) -> Self {
+        Self::in_unit(&self.given, self.length + octaves, false)
+    }
 }

@@ -1,0 +1,131 @@
+"""Energies and units many powers of ten from one: powers scale exactly, and what is screened is Coulomb's near by."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+import visviva as vv
+from visviva.potentials import Custom, PowerLaw, Yukawa
+
+S = vv.scattering
+ENERGIES = (1e-150, 1e-100, 1e-30, 1e30, 1e100, 1e150)
+
+
+def inverse_fourth(r: object, c: float) -> object:
+    return -c / r**4
+
+
+@pytest.mark.parametrize("energy", ENERGIES)
+@pytest.mark.parametrize("n", [2.01, 2.5, 3.0, 4.0, 6.0])
+def test_captures_scale_with_the_energy(n: float, energy: float) -> None:
+    """None was captured beyond a window of distances, and what cannot be told was told as a number."""
+    potential = PowerLaw(-3.0, n)
+    scale = energy ** (2.0 / n)
+    # As many roundings as the power of the energy has.
+    captured = S.capture_cross_section(potential, energy=energy)
+    assert captured * scale == pytest.approx(S.capture_cross_section(potential, energy=1.0), rel=2e-13)
+    # The barrier is at rⁿ = k(n − 2)/2E, and b² = r² n/(n − 2).
+    exact = np.pi * (n / (n - 2.0)) * (3.0 * (n - 2.0) / 2.0 / energy) ** (2.0 / n)
+    assert captured == pytest.approx(exact, rel=1e-12)
+    for angle in (0.3, 1.0, 2.5):
+        here = S.cross_section(potential, energy=energy, angle=angle) * scale
+        assert here == pytest.approx(S.cross_section(potential, energy=1.0, angle=angle), rel=1e-10)
+    with pytest.raises(vv.InvalidInput, match="captures nothing"):
+        S.transport_cross_section(potential, energy=energy)
+
+
+@pytest.mark.parametrize("energy", [1e-100, 1.0, 1e100])
+def test_langevin_of_a_formula(energy: float) -> None:
+    """π b² = 2π √(c/E) of −c/r⁴."""
+    formula = Custom(inverse_fourth, parameters={"c": 3.0})
+    exact = 2.0 * np.pi * np.sqrt(3.0 / energy)
+    assert S.capture_cross_section(formula, energy=energy) == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("energy", ENERGIES)
+@pytest.mark.parametrize("n", [1.01, 1.1, 1.5, 3.0, 7.0])
+def test_cross_sections_of_powers_scale_with_the_energy(n: float, energy: float) -> None:
+    """k/r^1.5 had a cross section of 9e12 for 1.02, and none at all where all of it was beyond the window."""
+    potential, scale = PowerLaw(1.0, n), energy ** (2.0 / n)
+    for find in (
+        lambda e: S.transport_cross_section(potential, energy=e),
+        lambda e: S.cross_section(potential, energy=e, angle=1.0),
+        lambda e: S.total_cross_section(potential, energy=e, theta_min=1.0),
+    ):
+        # 1e-10 is what integrals are held to.
+        assert find(energy) * scale == pytest.approx(find(1.0), rel=1e-10)
+
+
+@pytest.mark.parametrize("energy", ENERGIES)
+@pytest.mark.parametrize("n", [1.01, 1.5, 3.0, 7.0])
+def test_deflections_of_powers_scale_with_the_energy(n: float, energy: float) -> None:
+    """Derivatives were a quarter off at 1e-120, where that of the force is no number, and delays were cut short."""
+    length = energy ** (-1.0 / n)
+    b = np.array([1e-6, 0.3, 1.0, 10.0, 1e5])
+    # Each pair by itself, whichever others there are.
+    here = S.deflect(
+        PowerLaw(1.0, n), energy=[energy, 1.0] * 5, impact_parameter=np.repeat(b, 2) * np.tile([length, 1.0], 5)
+    )
+    there = S.deflect(PowerLaw(1.0, n), energy=1.0, impact_parameter=b)
+    # As the length is rounded: its power of the energy has 500 times the last digit.
+    near = {"rtol": 1e-11, "atol": 0.0}
+    assert np.allclose(here.angle[::2], there.angle, **near)
+    assert np.array_equal(here.angle[1::2], there.angle)
+    assert np.allclose(here.derivative[::2] * length, there.derivative, **near)
+    assert np.allclose(here.closest_approach[::2] / length, there.closest_approach, **near)
+    assert np.allclose(here.path_delay[::2] / length, there.path_delay, rtol=1e-9, atol=0.0)
+
+
+@pytest.mark.parametrize("unit", [1e-150, 1e-100, 1e100, 1e150])
+def test_units_of_energy_change_nothing(unit: float) -> None:
+    for n in (2.5, 4.0):
+        captured = S.capture_cross_section(PowerLaw(-3.0 * unit, n), energy=unit)
+        assert captured == pytest.approx(S.capture_cross_section(PowerLaw(-3.0, n), energy=1.0), rel=1e-13)
+    transport = S.transport_cross_section(PowerLaw(unit, 3.0), energy=unit)
+    assert transport == pytest.approx(S.transport_cross_section(PowerLaw(1.0, 3.0), energy=1.0), rel=1e-10)
+    mean = S.collision_integral(PowerLaw(unit, 3.0), temperature=unit, diameter=1.0)
+    assert mean == pytest.approx(S.collision_integral(PowerLaw(1.0, 3.0), temperature=1.0, diameter=1.0), rel=1e-9)
+
+
+def screened(energy: float) -> float:
+    """The transport cross section of e^{-r}/r, times E²: Rutherford's within 1e-7, small angles ψ = K₁(b)/E beyond."""
+    with mpmath.workdps(40):
+        e, between = mpmath.mpf(energy), mpmath.mpf("1e-7")
+        near = mpmath.pi / 2 * mpmath.log(1 + 4 * e**2 * between**2)
+        k = [mpmath.besselk(order, between) for order in range(3)]
+        return float(near - mpmath.pi * between**2 / 2 * (k[1] ** 2 - k[0] * k[2]))
+
+
+def custom_yukawa(r: object, k: float) -> object:
+    return k * np.exp(-r) / r
+
+
+@pytest.mark.parametrize("energy", [1e15, 1e18, 1e20, 1e24, 1e30])
+def test_transport_of_screened_charges_that_nearly_meet(energy: float) -> None:
+    """All within 1e-17 of the screening length was left out: 5 % at 1e18, 29 % at 1e24.
+
+    Rutherford's formula neglects the screening within 1e-7, a part of 1e-7 of an angle that small angles know better;
+    the logarithm of both is ln(E) wide, and what is neglected 1e-14 of it. Small angles end where E b > 1e7.
+    """
+    for potential in (Yukawa(1.0, 1.0), Yukawa(-1.0, 1.0), Custom(custom_yukawa, parameters={"k": 1.0})):
+        found = S.transport_cross_section(potential, energy=energy) * energy**2
+        assert found == pytest.approx(screened(energy), rel=1e-10)
+    # S = γ E Q/2 of equal masses, γ = 1 and half of the beam's energy relative.
+    stopping = S.nuclear_stopping(Yukawa(1.0, 1.0), beam_energy=2.0 * energy, masses=(1.0, 1.0)) * energy
+    assert stopping == pytest.approx(screened(energy), rel=1e-10)
+
+
+def test_collision_integrals_of_hot_screened_charges() -> None:
+    """T² Ω grows by ½ ln 1e6 over six decades: it stood still."""
+    cold, hot = (S.collision_integral(Yukawa(1.0, 1.0), temperature=t, diameter=1.0) * t**2 for t in (1e12, 1e18))
+    assert hot - cold == pytest.approx(0.5 * np.log(1e6), rel=1e-9)
+
+
+@pytest.mark.parametrize("energy", [1e30, 1e40, 1e60])
+def test_rutherford_within_a_screening_length(energy: float) -> None:
+    found = S.cross_section(Yukawa(1.0, 1.0), energy=energy, angle=1.0) * energy**2
+    assert found == pytest.approx(1.0 / (16.0 * np.sin(0.5) ** 4), rel=1e-10)
+    total = S.total_cross_section(Yukawa(1.0, 1.0), energy=energy, theta_min=1.0) * energy**2
+    assert total == pytest.approx(0.25 * np.pi / np.tan(0.5) ** 2, rel=1e-10)
