@@ -25,13 +25,13 @@ def test_captures_scale_with_the_energy(n: float, energy: float) -> None:
     scale = energy ** (2.0 / n)
     # As many roundings as the power of the energy has.
     captured = S.capture_cross_section(potential, energy=energy)
-    assert captured * scale == pytest.approx(S.capture_cross_section(potential, energy=1.0), rel=2e-13)
+    assert captured * scale == pytest.approx(S.capture_cross_section(potential, energy=1.0), rel=2e-13, abs=0.0)
     # The barrier is at rⁿ = k(n − 2)/2E, and b² = r² n/(n − 2).
     exact = np.pi * (n / (n - 2.0)) * (3.0 * (n - 2.0) / 2.0 / energy) ** (2.0 / n)
-    assert captured == pytest.approx(exact, rel=1e-12)
+    assert captured == pytest.approx(exact, rel=1e-12, abs=0.0)
     for angle in (0.3, 1.0, 2.5):
         here = S.cross_section(potential, energy=energy, angle=angle) * scale
-        assert here == pytest.approx(S.cross_section(potential, energy=1.0, angle=angle), rel=1e-10)
+        assert here == pytest.approx(S.cross_section(potential, energy=1.0, angle=angle), rel=1e-10, abs=0.0)
     with pytest.raises(vv.InvalidInput, match="captures nothing"):
         S.transport_cross_section(potential, energy=energy)
 
@@ -41,7 +41,7 @@ def test_langevin_of_a_formula(energy: float) -> None:
     """π b² = 2π √(c/E) of −c/r⁴."""
     formula = Custom(inverse_fourth, parameters={"c": 3.0})
     exact = 2.0 * np.pi * np.sqrt(3.0 / energy)
-    assert S.capture_cross_section(formula, energy=energy) == pytest.approx(exact, rel=1e-12)
+    assert S.capture_cross_section(formula, energy=energy) == pytest.approx(exact, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("energy", ENERGIES)
@@ -55,7 +55,7 @@ def test_cross_sections_of_powers_scale_with_the_energy(n: float, energy: float)
         lambda e: S.total_cross_section(potential, energy=e, theta_min=1.0),
     ):
         # 1e-10 is what integrals are held to.
-        assert find(energy) * scale == pytest.approx(find(1.0), rel=1e-10)
+        assert find(energy) * scale == pytest.approx(find(1.0), rel=1e-10, abs=0.0)
 
 
 @pytest.mark.parametrize("energy", ENERGIES)
@@ -82,11 +82,13 @@ def test_deflections_of_powers_scale_with_the_energy(n: float, energy: float) ->
 def test_units_of_energy_change_nothing(unit: float) -> None:
     for n in (2.5, 4.0):
         captured = S.capture_cross_section(PowerLaw(-3.0 * unit, n), energy=unit)
-        assert captured == pytest.approx(S.capture_cross_section(PowerLaw(-3.0, n), energy=1.0), rel=1e-13)
+        assert captured == pytest.approx(S.capture_cross_section(PowerLaw(-3.0, n), energy=1.0), rel=1e-13, abs=0.0)
     transport = S.transport_cross_section(PowerLaw(unit, 3.0), energy=unit)
-    assert transport == pytest.approx(S.transport_cross_section(PowerLaw(1.0, 3.0), energy=1.0), rel=1e-10)
+    assert transport == pytest.approx(S.transport_cross_section(PowerLaw(1.0, 3.0), energy=1.0), rel=1e-10, abs=0.0)
     mean = S.collision_integral(PowerLaw(unit, 3.0), temperature=unit, diameter=1.0)
-    assert mean == pytest.approx(S.collision_integral(PowerLaw(1.0, 3.0), temperature=1.0, diameter=1.0), rel=1e-9)
+    assert mean == pytest.approx(
+        S.collision_integral(PowerLaw(1.0, 3.0), temperature=1.0, diameter=1.0), rel=1e-9, abs=0.0
+    )
 
 
 def screened(energy: float) -> float:
@@ -111,21 +113,21 @@ def test_transport_of_screened_charges_that_nearly_meet(energy: float) -> None:
     """
     for potential in (Yukawa(1.0, 1.0), Yukawa(-1.0, 1.0), Custom(custom_yukawa, parameters={"k": 1.0})):
         found = S.transport_cross_section(potential, energy=energy) * energy**2
-        assert found == pytest.approx(screened(energy), rel=1e-10)
+        assert found == pytest.approx(screened(energy), rel=1e-10, abs=0.0)
     # S = γ E Q/2 of equal masses, γ = 1 and half of the beam's energy relative.
     stopping = S.nuclear_stopping(Yukawa(1.0, 1.0), beam_energy=2.0 * energy, masses=(1.0, 1.0)) * energy
-    assert stopping == pytest.approx(screened(energy), rel=1e-10)
+    assert stopping == pytest.approx(screened(energy), rel=1e-10, abs=0.0)
 
 
 def test_collision_integrals_of_hot_screened_charges() -> None:
     """T² Ω grows by ½ ln 1e6 over six decades: it stood still."""
     cold, hot = (S.collision_integral(Yukawa(1.0, 1.0), temperature=t, diameter=1.0) * t**2 for t in (1e12, 1e18))
-    assert hot - cold == pytest.approx(0.5 * np.log(1e6), rel=1e-9)
+    assert hot - cold == pytest.approx(0.5 * np.log(1e6), rel=1e-9, abs=0.0)
 
 
 @pytest.mark.parametrize("energy", [1e30, 1e40, 1e60])
 def test_rutherford_within_a_screening_length(energy: float) -> None:
     found = S.cross_section(Yukawa(1.0, 1.0), energy=energy, angle=1.0) * energy**2
-    assert found == pytest.approx(1.0 / (16.0 * np.sin(0.5) ** 4), rel=1e-10)
+    assert found == pytest.approx(1.0 / (16.0 * np.sin(0.5) ** 4), rel=1e-10, abs=0.0)
     total = S.total_cross_section(Yukawa(1.0, 1.0), energy=energy, theta_min=1.0) * energy**2
-    assert total == pytest.approx(0.25 * np.pi / np.tan(0.5) ** 2, rel=1e-10)
+    assert total == pytest.approx(0.25 * np.pi / np.tan(0.5) ** 2, rel=1e-10, abs=0.0)
