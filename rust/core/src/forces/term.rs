@@ -380,6 +380,8 @@ pub enum Energy {
     Constant,
     /// It never grows.
     NeverGrows,
+    /// It changes by what drives do, which is bounded.
+    Driven,
     /// Forces give and take.
     Unknown,
 }
@@ -387,10 +389,13 @@ pub enum Energy {
 impl Energy {
     /// Of these bodies under all the forces together.
     pub fn under(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>) -> Self {
+        let acting = || terms.iter().filter(|term| term.acts(bodies));
         if conserved_by(terms, bodies).energy {
             Self::Constant
-        } else if terms.iter().all(|term| !term.acts(bodies) || term.never_gives_energy()) {
+        } else if acting().all(|term| term.never_gives_energy()) {
             Self::NeverGrows
+        } else if acting().all(|term| term.conserves().energy || term.as_driven().is_some()) {
+            Self::Driven
         } else {
             Self::Unknown
         }

@@ -32,6 +32,9 @@ const WORTH_A_LOOK: f64 = 1e-2;
 /// … and so many times what a last digit makes of the energy is that.
 const ROUNDINGS: f64 = 8.0;
 
+/// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
+const FASTER: f64 = 3.0;
+
 /// Fills in the errors of the energies.
 ///
 /// # Errors
@@ -47,6 +50,7 @@ pub(super) fn look(
     if plan.energy == Energy::Unknown || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
+    let span = (request.times[request.times.len() - 1] - scene.t0).abs();
     let pairs = plan.pairs_per_evaluation();
     let mut bodies = PreciseBodies::default();
     for copy in 0..scene.copies {
@@ -72,15 +76,17 @@ pub(super) fn look(
         let change = kinetic_end.plus(potential_end).plus(kinetic.plus(potential).times(-1.0));
         // Of the two potential energies the larger: what falls from rest where the potential is zero begins with nothing.
         let size = larger(absolute(potential), absolute(potential_end));
-        let whole = kinetic.plus(size);
+        // What drives give may be all that there is at the end.
+        let driven = plan.energy == Energy::Driven;
+        let whole = if driven { larger(kinetic, kinetic_end) } else { kinetic }.plus(size);
         if whole.to_f64() >= LEAST {
-            let error = |whole| {
+            let error = |whole: Scaled| {
                 let change = change.over(whole).to_f64();
-                // Backward in time what is taken comes back.
-                if plan.energy == Energy::Constant {
-                    change.abs()
-                } else {
-                    (plan.direction * change).max(0.0)
+                match plan.energy {
+                    Energy::Driven => (change.abs() - given_by_drives(scene, copy, span, whole)).max(0.0),
+                    // Backward in time what is taken comes back.
+                    Energy::NeverGrows => (plan.direction * change).max(0.0),
+                    Energy::Constant | Energy::Unknown => change.abs(),
                 }
             };
             outcome.energy_error = error(whole);
@@ -124,6 +130,17 @@ fn energy_of(
     bodies.settle();
     let (potential, _) = potential_and_virial(scene.forces_of(copy), bodies, 1, ticker)?;
     Ok((kinetic_energy(bodies), potential))
+}
+
+/// What drives may give to a copy in a span of time, as a part of its energies: their forces times the ways of all bodies, at
+/// the speeds that these energies allow.
+fn given_by_drives(scene: &Scene, copy: usize, span: f64, whole: Scaled) -> f64 {
+    let size = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+    let drives = scene.forces_of(copy).iter().filter_map(|force| force.as_driven());
+    let force: f64 = drives.map(|drive| size(drive.amplitude)).sum();
+    let masses = scene.masses(copy).iter().filter(|&&mass| mass > 0.0);
+    let ways: f64 = masses.map(|mass| (2.0 / mass).sqrt() * span).sum();
+    Scaled::from(FASTER * force).times(ways).over(whole.sqrt()).to_f64()
 }
 
 /// Vectors whose coordinates are a last digit larger and smaller in turns.
