@@ -63,7 +63,7 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
         with suppress(Error):
             changes[group], sizes[group], starts[group] = _changes(result, asked, group)
     worst, error = _worst(changes, sizes, starts, asked)
-    order = _order(result["stats"]["method"])
+    order = _orders()[result["stats"]["method"]]
     if error > 0.0:
         result["energy_error"] = (worst, error, abs(asked["dt"]), order)
     doubt = unresolved(result, asked, np.flatnonzero(finished & ~told), order)
@@ -72,10 +72,9 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
 
 
 @cache
-def _order(name: str) -> int:
-    """Of a method by that name, which turns bodies or, where nothing turns them, moves them."""
-    methods = [*_core.methods(rigid=True), *_core.methods()]
-    return next(int(method["order"]) for method in methods if method["name"] == name)
+def _orders() -> dict[str, int]:
+    """Of all methods: of those that turn bodies and, where nothing turns them, of those that move them."""
+    return {method["name"]: method["order"] for method in (*_core.methods(), *_core.methods(rigid=True))}
 
 
 def _worst(

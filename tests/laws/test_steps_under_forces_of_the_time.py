@@ -89,8 +89,11 @@ def test_what_hardly_moves_yet_is_not_blamed() -> None:
     """Under a sine from rest Euler's first step finds no force at all, which is nothing beside what follows."""
     body = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
     sine = vv.DrivenForce((1.0, 0.0, 0.0), frequency=1.0, phase=-0.5 * np.pi)
-    for method in ("euler", "symplectic_euler"):
-        assert warned(vv.Scene(body, sine), t=4.0, method=method, dt=0.01) == []
+    for method in ("euler", "symplectic_euler", "leapfrog", "rk4"):
+        for turns in (0.64, 1.0, 2.0):  # after whole turns it rests again
+            how = {"t": turns * 2.0 * np.pi, "method": method, "dt": np.pi / 100.0}
+            assert warned(vv.Scene(body, sine), **how) == []
+            assert warned(vv.Scene(body, sine, vv.Harmonic(k=1e-3)), **how) == []
 
 
 def test_bodies_that_balance_where_others_turn_are_not_blamed() -> None:

@@ -16,6 +16,7 @@ use crate::numerics::power_of_two::scale;
 use crate::numerics::scaled::Scaled;
 use core::f64::consts::PI;
 
+mod near;
 mod places;
 
 pub use places::Place;
@@ -69,8 +70,6 @@ pub struct Passage {
 const SAMPLES: usize = 2048;
 /// Relative errors of integrals, if they can be had.
 const TOLERANCE: f64 = 1e-13;
-/// Distances this part of the way to a turning point apart are near: beyond, their variables differ by a digit less at most.
-const NEAR: f64 = 0.1;
 /// The rest of a logarithmic variable that is looked at.
 const FAR: f64 = 200.0;
 
@@ -265,35 +264,6 @@ impl<'a> Motion<'a> {
             self.integral(a.min(b), a.max(b))
         };
         integral.map(|integral| self.passage(integral)).ok_or_else(refused)
-    }
-
-    /// Whether two distances are so near each other, beside the turning points, that the difference of their variables has
-    /// lost digits.
-    fn are_near(&self, low: f64, high: f64) -> bool {
-        let above = |a: DoubleDouble| (DoubleDouble::from(low) - a).high();
-        let below = |b: DoubleDouble| (b - DoubleDouble::from(high)).high();
-        let room = match self.form {
-            Form::Between(a, b, _) => above(a).min(below(b)),
-            Form::Beyond(a) => above(a),
-            Form::Within(b) => below(b),
-            Form::Open(_) => low,
-        };
-        high - low < NEAR * room.min(low)
-    }
-
-    /// From one of two near distances to the other, in the distance itself.
-    fn near_integral(&self, low: f64, high: f64) -> Option<Integral> {
-        let rates = |past: f64| {
-            let r = DoubleDouble::from(low) + DoubleDouble::from(past);
-            let time = 1.0 / self.radial.kinetic(r).0.high().sqrt();
-            [time, self.turning * time / r.high() / r.high()]
-        };
-        let mut places = vec![0.0, high - low];
-        places.extend(
-            self.radial.field.breaks().into_iter().filter(|r| low < *r && *r < high).map(|r| r - low),
-        );
-        places.sort_by(f64::total_cmp);
-        between(&rates, &places, TOLERANCE)
     }
 
     /// The variable at both ends of the range, as far as numbers go.

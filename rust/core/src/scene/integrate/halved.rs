@@ -16,6 +16,7 @@ use super::report::{Ending, Report};
 use super::{Job, Result, fixed};
 use crate::error::Error;
 use crate::forces::Dynamics;
+use crate::forces::driven_force::Drive;
 use crate::forces::term::Energy;
 use crate::numerics::lanes::Lanes;
 use crate::ode::Scheme;
@@ -112,12 +113,16 @@ pub(super) fn look(
             let finished = units.iter().zip(reports).enumerate();
             let finished = finished.filter(|(_, (_, report))| report.ending == Ending::Finished);
             for (lane, (unit, report)) in finished {
+                let seen: Vec<_> = pairs.iter().map(|pair| (pair, pair.farthest(unit, lane))).collect();
                 for slot in unit.unit.recorded.clone() {
-                    let by_pairs =
-                        pairs.iter().map(|pair| (pair.error(unit, (slot, lane), end, job.step()), pair.by));
+                    let usual = usual_speed(job, unit, (slot, lane), end, report.counts.steps);
+                    let by_pair = |&(pair, farthest): &(&Pair, f64)| {
+                        (pair.error(unit, (slot, lane), (usual, farthest), job.step()), pair.by)
+                    };
                     let by_drive =
                         (by_drives(job, unit, (slot, lane), end, report.counts.steps), Evidence::Drive);
-                    for (error, by) in by_pairs.chain([by_drive]).filter(|&(error, _)| error > TOLERATED) {
+                    let found = seen.iter().map(by_pair).chain([by_drive]);
+                    for (error, by) in found.filter(|&(error, _)| error > TOLERATED) {
                         let doubt = Unresolved { body: unit.unit.bodies[slot], error, by };
                         report.unresolved = Unresolved::worse(report.unresolved, Some(doubt));
                     }
@@ -136,6 +141,13 @@ struct Pair {
     by: Evidence,
     before: State<Lanes>,
     after: [State<Lanes>; 2],
+}
+
+/// How fast a body is at the end, and on the way.
+#[derive(Clone, Copy)]
+struct Usual {
+    at_end: f64,
+    on_the_way: f64,
 }
 
 /// Those that are looked at in a run.
@@ -188,25 +200,56 @@ fn halved(
 }
 
 impl Pair {
-    /// How far apart they are in the velocity of a body, as a part of the largest on the way, which at the start is that of
-    /// all the run: what is lost in a step of a body that is hardly moving yet is nothing beside what it gains.
-    fn error(&self, unit: &Prepared, (slot, lane): (usize, usize), end: &State<Lanes>, step: f64) -> f64 {
+    /// How far apart they are in the velocity of a body, as a part of the largest on the way, or of what is usual.
+    fn error(
+        &self,
+        unit: &Prepared,
+        (slot, lane): (usize, usize),
+        (usual, farthest): (Usual, f64),
+        step: f64,
+    ) -> f64 {
         let velocity = |state: &State<Lanes>| unit.pick(slot, state.v(), lane);
         let [one, other] = [&self.after[0], &self.after[1]].map(velocity);
         if one.iter().any(|x| !x.is_finite()) {
             return f64::INFINITY;
         }
         let off = distance(one, other);
-        let speeds = [velocity(&self.before), one, other, velocity(end)].map(|v| speed(unit, v));
-        let largest = speeds.into_iter().fold(0.0, f64::max);
-        let place = |slot: usize| {
-            let places = [&self.before, &self.after[0]].map(|state| size(unit.place(slot, state, lane)));
-            places[0].max(places[1])
-        };
-        let farthest = (0..unit.unit.bodies.len()).map(place).fold(0.0, f64::max);
-        let known = (ROUNDING * place(slot)).max(ROUNDING_OF_ALL * farthest);
+        let speeds = [velocity(&self.before), one, other].map(|v| speed(unit, v));
+        // What blows up at the end is not small beside what it has come to.
+        let at_end = if self.by == Evidence::FirstStep { usual.at_end } else { 0.0 };
+        let usual = usual.on_the_way.max(at_end);
+        let largest = speeds.into_iter().fold(usual, f64::max);
+        let known = (ROUNDING * self.place(unit, slot, lane)).max(ROUNDING_OF_ALL * farthest);
         if off * step.abs() > known { off / largest } else { 0.0 }
     }
+    /// How far from the origin a body is.
+    fn place(&self, unit: &Prepared, slot: usize, lane: usize) -> f64 {
+        let [before, after] = [&self.before, &self.after[0]].map(|state| size(unit.place(slot, state, lane)));
+        before.max(after)
+    }
+    /// How far the farthest is.
+    fn farthest(&self, unit: &Prepared, lane: usize) -> f64 {
+        (0..unit.unit.bodies.len()).map(|slot| self.place(unit, slot, lane)).fold(0.0, f64::max)
+    }
+}
+
+/// How fast a body is that may stand still at both ends of a run: what is lost there of what hardly moves is nothing. It is as
+/// fast as at the end, as it was in the mean, or as drives make it that nothing hinders.
+fn usual_speed(
+    job: &Job<'_>,
+    unit: &Prepared,
+    (slot, lane): (usize, usize),
+    end: &State<Lanes>,
+    steps: u64,
+) -> Usual {
+    let span = steps as f64 * job.step().abs();
+    let mean = distance(unit.place(slot, end, lane), unit.position[slot]) / span;
+    let driven = |drive: Drive| {
+        let quarter = job.plan.units.take(1.0 / drive.frequency.abs(), [0, 0, 1]);
+        pushed(job, unit, slot, drive.amplitude) * quarter.min(span)
+    };
+    let driven: f64 = drives(job, unit).map(driven).sum();
+    Usual { at_end: speed(unit, unit.pick(slot, end.v(), lane)), on_the_way: mean.max(driven) }
 }
 
 /// What drives with less than two steps to a period make of a velocity at most, as a part of it.
@@ -217,17 +260,24 @@ fn by_drives(
     end: &State<Lanes>,
     steps: u64,
 ) -> f64 {
-    let (copy, body) = (unit.unit.copy, unit.unit.bodies[slot]);
     let dt = job.plan.dt.map_or(0.0, f64::abs);
-    let drives = job.scene.forces_of(copy).iter().filter_map(|force| force.as_driven());
-    let unseen = drives.filter(|drive| drive.frequency.abs() * dt > PI);
-    let force: f64 = unseen.map(|drive| size(drive.amplitude)).sum();
-    if force == 0.0 {
+    let unseen = drives(job, unit).filter(|drive| drive.frequency.abs() * dt > PI);
+    let pushed: f64 = unseen.map(|drive| pushed(job, unit, slot, drive.amplitude)).sum();
+    if pushed == 0.0 {
         return 0.0;
     }
-    let gained = force / job.scene.masses(copy)[body] * dt * steps as f64;
-    let gained = job.plan.units.take(gained, [1, 0, -1]);
+    let gained = pushed * steps as f64 * job.step().abs();
     gained / gained.max(speed(unit, unit.pick(slot, end.v(), lane)))
+}
+
+fn drives<'a>(job: &Job<'a>, unit: &Prepared) -> impl Iterator<Item = Drive> + 'a {
+    job.scene.forces_of(unit.unit.copy).iter().filter_map(|force| force.as_driven())
+}
+
+/// The acceleration of a body by a force.
+fn pushed(job: &Job<'_>, unit: &Prepared, slot: usize, force: [f64; 3]) -> f64 {
+    let mass = job.scene.masses(unit.unit.copy)[unit.unit.bodies[slot]];
+    job.plan.units.take(size(force) / mass, [1, 0, -2])
 }
 
 /// How fast a body is: among others, beside them; alone, in the scene, and not beside the origin that goes along with it.
