@@ -111,6 +111,9 @@ def _warn_of_step(result: dict[str, Any], asked: _core._Request, *, ensemble: bo
     whose = f"in copy {copy}, " if ensemble else ""
     # The error of one step goes as dt to one power more than that at the end.
     advice = _advice(result, error, dt, order + 1, _OF_STEPS if asked["rigid"] is None else _OF_RIGID_BODIES)
+    if by == "drive":
+        # What steps see of it does not go as a power of them.
+        advice = "take steps of a sixth of its period or less, or an adaptive method (verner98)"
     size = f"{error:.2g} of itself" if error < np.inf else "more than 1e308"
     message = f"{whose}{_EVIDENCE[by]} {velocity} is off by {size}: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())

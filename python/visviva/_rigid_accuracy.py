@@ -53,7 +53,11 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
     together = asked["own_forces"] is None and bool((asked["mass"] == asked["mass"][0]).all())
     few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
     fewest = _ALONE if not together else 0 if few else _MANY_EVALUATIONS
-    finished, told = result["status"] == Status.OK, _tells(asked, scene)
+    finished = result["status"] == Status.OK
+    try:
+        told = _tells(asked, scene)
+    except Error:
+        return  # A run that is done is not lost for what cannot be told of it.
     looked_at = finished & told & (result["per_trajectory"]["evaluations"] >= fewest)
     copies = np.flatnonzero(looked_at)
     groups = ([copies] if together else np.split(copies, len(copies))) if len(copies) else []

@@ -273,3 +273,14 @@ def test_a_ball_with_a_mass_turns_the_walls_back() -> None:
     assert out.status is vv.Status.OK
     assert np.allclose(out.velocity[-1, :2, 0], [-1.0, 1.0], rtol=0.0, atol=1e-2)
     assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-9, abs=0.0)
+
+
+def test_a_fast_ball_between_slow_walls_bounces_on() -> None:
+    """Thousands of bounces, each harder and sooner, tell of no end while the walls are far apart: they meet at 1.5."""
+    places, speeds = [[-2.0, 0, 0], [2.0, 0, 0], [0.1, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [1e5, 0, 0]]
+    scene = spheres([1.0, 1.0, 0.0], places, speeds, [0.3, 0.3, 0.2])
+    out = scene.run(0.2, collisions="bounce")
+    assert out.status is vv.Status.OK
+    # Each bounce adds twice the speed of a wall, 1.
+    assert len(out.collisions) > 4096
+    assert abs(out.velocity[-1, 2, 0]) == pytest.approx(1e5 + 2.0 * len(out.collisions), rel=1e-12, abs=0.0)

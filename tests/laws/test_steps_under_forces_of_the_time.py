@@ -138,3 +138,41 @@ def test_what_a_drive_does_pay_for_is_not_blamed(method: str) -> None:
         for t in (0.5, 40.0, -40.0):
             signed = {name: np.copysign(dt, t) for name, dt in step.items()}
             assert warned(scene, t=t, method=method, **signed) == []
+
+
+@pytest.mark.parametrize("frequency", [0.0, 1e-3])
+def test_a_strong_drive_is_no_measure_where_drag_holds_the_body(frequency: float) -> None:
+    """Its terminal speed is 0.01, and steps of 2.8 times of decay made -0.08 of it, without a word for a day."""
+    body = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    drive = vv.DrivenForce((1.0, 0.0, 0.0), frequency=frequency)
+    scene = vv.Scene(body, drive, vv.LinearDrag(tau=0.01))
+    [message] = warned(scene, t=2.8, method="rk4", dt=0.028)
+    assert "the velocity of body 0 is off" in message
+    assert warned(scene, t=2.8, method="rk4", dt=0.002) == []
+
+
+@pytest.mark.parametrize("force", [1e-6, 1e-4])
+def test_a_swing_between_two_rests_without_energies_is_not_blamed(force: float) -> None:
+    """At both turning points V is zero, so what is there is what a resonant drive gave, and no measure of the swing."""
+    body = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    drive = vv.DrivenForce((force, 0.0, 0.0), frequency=1.0, phase=0.5 * np.pi)
+    scene = vv.Scene(body, vv.Harmonic(k=1.0), vv.UniformField((-1.0, 0.0, 0.0)), drive)
+    for steps in (200, 20000):
+        assert warned(scene, t=2.0 * np.pi, method="kahan_li8", dt=2.0 * np.pi / steps) == []
+
+
+def test_a_hum_that_a_spring_holds_is_not_blamed_however_long_it_lasts() -> None:
+    """Taken for constant it would give a free body all of its velocity; the spring lets it move by a thousandth."""
+    body = vv.Particles([1.0], [[1.0, 0.0, 0.0]])
+    scene = vv.Scene(body, vv.Harmonic(k=1.0), vv.DrivenForce((1e-3, 0.0, 0.0), frequency=20.0 * np.pi))
+    assert warned(scene, t=1000.0, method="kahan_li8", dt=0.1) == []
+
+
+def test_the_step_that_a_drive_needs_is_named_by_its_period() -> None:
+    body = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    scene = vv.Scene(body, vv.DrivenForce((1.0, 0.0, 0.0), frequency=20.0 * np.pi))
+    [message] = warned(scene, t=24.0, method="leapfrog", dt=0.2)
+    assert message == (
+        "by a DrivenForce that has less than two steps to a period the velocity of body 0 is off by 1 of itself: take "
+        "steps of a sixth of its period or less, or an adaptive method (verner98)"
+    )

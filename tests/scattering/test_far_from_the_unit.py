@@ -131,3 +131,19 @@ def test_rutherford_within_a_screening_length(energy: float) -> None:
     assert found == pytest.approx(1.0 / (16.0 * np.sin(0.5) ** 4), rel=1e-10, abs=0.0)
     total = S.total_cross_section(Yukawa(1.0, 1.0), energy=energy, theta_min=1.0) * energy**2
     assert total == pytest.approx(0.25 * np.pi / np.tan(0.5) ** 2, rel=1e-10, abs=0.0)
+
+
+# At n = 0.05 and 1e-30 all turn at 1e600, which is no number.
+@pytest.mark.parametrize(
+    ("n", "energy"), [(n, energy) for n in (0.05, 0.2, 0.5) for energy in (1e-10, 1.0, 1e30, 1e100)]
+)
+def test_weak_powers_have_a_number_wherever_they_act(n: float, energy: float) -> None:
+    """Their length at that energy may be no number, and then they are taken where they are.
+
+    Small angles are ψ = (k/E) b⁻ⁿ √π Γ((n + 1)/2)/Γ(n/2), and next to it terms of its own size.
+    """
+    found = S.deflect(PowerLaw(1.0, n), energy=energy, impact_parameter=1.0)
+    assert np.isfinite(found.angle)
+    if energy >= 1e30:
+        small = float(mpmath.sqrt(mpmath.pi) * mpmath.gamma((n + 1.0) / 2.0) / mpmath.gamma(n / 2.0)) / energy
+        assert found.angle == pytest.approx(small, rel=1e-9, abs=0.0)

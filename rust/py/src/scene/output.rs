@@ -296,8 +296,8 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
         Ending::Squeezed { bodies: (i, j) } => Some(Error::Convergence {
             message: format!(
                 "bodies {i} and {j}, one of which the other does not feel, met ever faster, ever sooner: between spheres \
-                 that come together it bounces infinitely often before they meet (end the run before it, give the light \
-                 one a mass that turns them back, or a restitution below 1)"
+                 that come together it bounces infinitely often before they meet (end the run before it, or give the \
+                 light one a mass that turns them back)"
             ),
             time,
         }),

@@ -6,6 +6,7 @@
 use super::Deflector;
 use super::profile::Profile;
 use crate::Result;
+use crate::numerics::power_of_two::scale;
 use crate::parallel::Ticker;
 use std::collections::BTreeMap;
 
@@ -17,6 +18,12 @@ impl Deflector {
     }
     fn octaves_to(&self, energy: f64) -> i32 {
         self.profile.as_ref().map_or(0, |profile| profile.octaves_to(energy))
+    }
+    /// Of a pair: none where its impact parameter leaves the range of numbers.
+    fn octaves_of(&self, energy: f64, b: f64) -> i32 {
+        let octaves = self.octaves_to(energy);
+        let stays = b == 0.0 || scale(b, -octaves).is_normal();
+        if stays { octaves } else { 0 }
     }
     fn moved(&self, octaves: i32) -> Option<Self> {
         let profile = self.profile.as_ref()?.moved(octaves);
@@ -30,13 +37,13 @@ impl Deflector {
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<Vec<T>>> {
         if !self.profile.as_ref().is_some_and(Profile::is_power)
-            || energy.iter().all(|energy| self.octaves_to(*energy) == 0)
+            || energy.iter().zip(b).all(|(energy, b)| self.octaves_of(*energy, *b) == 0)
         {
             return Ok(None);
         }
         let mut places: BTreeMap<i32, Vec<usize>> = BTreeMap::new();
-        for (place, energy) in energy.iter().enumerate().take(b.len()) {
-            places.entry(self.octaves_to(*energy)).or_default().push(place);
+        for (place, (energy, b)) in energy.iter().zip(b).enumerate() {
+            places.entry(self.octaves_of(*energy, *b)).or_default().push(place);
         }
         let mut found: Vec<Option<T>> = vec![None; energy.len().min(b.len())];
         for (octaves, places) in places {

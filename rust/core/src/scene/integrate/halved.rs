@@ -23,7 +23,7 @@ use crate::ode::Scheme;
 use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
 use crate::parallel::Ticker;
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
 
 /// A velocity that is off by this part of itself after one step tells nothing. Oscillations come to that with seven steps to
 /// a period by Euler's method, and with three by `rk4`; decays with 0.9 and with 2 times of decay to a step.
@@ -143,11 +143,11 @@ struct Pair {
     after: [State<Lanes>; 2],
 }
 
-/// How fast a body is at the end, and on the way.
+/// How fast a body is in a run, as a measure for its first step and for one from its end.
 #[derive(Clone, Copy)]
 struct Usual {
+    at_start: f64,
     at_end: f64,
-    on_the_way: f64,
 }
 
 /// Those that are looked at in a run.
@@ -215,9 +215,7 @@ impl Pair {
         }
         let off = distance(one, other);
         let speeds = [velocity(&self.before), one, other].map(|v| speed(unit, v));
-        // What blows up at the end is not small beside what it has come to.
-        let at_end = if self.by == Evidence::FirstStep { usual.at_end } else { 0.0 };
-        let usual = usual.on_the_way.max(at_end);
+        let usual = if self.by == Evidence::FirstStep { usual.at_start } else { usual.at_end };
         let largest = speeds.into_iter().fold(usual, f64::max);
         let known = (ROUNDING * self.place(unit, slot, lane)).max(ROUNDING_OF_ALL * farthest);
         if off * step.abs() > known { off / largest } else { 0.0 }
@@ -234,7 +232,8 @@ impl Pair {
 }
 
 /// How fast a body is that may stand still at both ends of a run: what is lost there of what hardly moves is nothing. It is as
-/// fast as at the end, as it was in the mean, or as drives make it that nothing hinders.
+/// fast as at the end, as it was in the mean, or, where nothing hinders them, as drives make it. Under drag what comes to rest
+/// at the end is measured by itself: the steps of a method may rest where bodies do not.
 fn usual_speed(
     job: &Job<'_>,
     unit: &Prepared,
@@ -248,11 +247,16 @@ fn usual_speed(
         let quarter = job.plan.units.take(1.0 / drive.frequency.abs(), [0, 0, 1]);
         pushed(job, unit, slot, drive.amplitude) * quarter.min(span)
     };
-    let driven: f64 = drives(job, unit).map(driven).sum();
-    Usual { at_end: speed(unit, unit.pick(slot, end.v(), lane)), on_the_way: mean.max(driven) }
+    let driven = if only_drives(job, unit) { drives(job, unit).map(driven).sum() } else { 0.0 };
+    let on_the_way = mean.max(driven);
+    Usual {
+        at_start: on_the_way.max(speed(unit, unit.pick(slot, end.v(), lane))),
+        at_end: if job.plan.energy == Energy::Driven { on_the_way } else { 0.0 },
+    }
 }
 
-/// What drives with less than two steps to a period make of a velocity at most, as a part of it.
+/// What drives with less than two steps to a period make of a velocity at most, as a part of it, where nothing else acts: of
+/// what steps see of one, which is a slower one.
 fn by_drives(
     job: &Job<'_>,
     unit: &Prepared,
@@ -260,14 +264,27 @@ fn by_drives(
     end: &State<Lanes>,
     steps: u64,
 ) -> f64 {
-    let dt = job.plan.dt.map_or(0.0, f64::abs);
-    let unseen = drives(job, unit).filter(|drive| drive.frequency.abs() * dt > PI);
-    let pushed: f64 = unseen.map(|drive| pushed(job, unit, slot, drive.amplitude)).sum();
-    if pushed == 0.0 {
+    if !only_drives(job, unit) {
         return 0.0;
     }
-    let gained = pushed * steps as f64 * job.step().abs();
+    let dt = job.plan.dt.map_or(0.0, f64::abs);
+    let span = steps as f64 * dt;
+    let gained = |drive: Drive| {
+        let turns = drive.frequency.abs() * dt / TAU;
+        let seen = TAU * (turns - turns.round()).abs() / dt;
+        let time = job.plan.units.take(span.min(1.0 / seen), [0, 0, 1]);
+        pushed(job, unit, slot, drive.amplitude) * time
+    };
+    let unseen = drives(job, unit).filter(|drive| drive.frequency.abs() * dt > PI);
+    let gained: f64 = unseen.map(gained).sum();
+    if gained == 0.0 {
+        return 0.0;
+    }
     gained / gained.max(speed(unit, unit.pick(slot, end.v(), lane)))
+}
+
+fn only_drives(job: &Job<'_>, unit: &Prepared) -> bool {
+    job.plan.forces_of(unit.unit.copy).iter().all(|force| force.as_driven().is_some())
 }
 
 fn drives<'a>(job: &Job<'a>, unit: &Prepared) -> impl Iterator<Item = Drive> + 'a {

@@ -78,7 +78,11 @@ pub(super) fn look(
         let size = larger(absolute(potential), absolute(potential_end));
         // What drives give may be all that there is at the end.
         let driven = plan.energy == Energy::Driven;
-        let whole = if driven { larger(kinetic, kinetic_end) } else { kinetic }.plus(size);
+        let mut whole = if driven { larger(kinetic, kinetic_end) } else { kinetic }.plus(size);
+        if driven {
+            // Bodies that rest at both ends, where potentials are zero, were as fast on the way as all forces make them.
+            whole = whole.plus(gained_from_rest(scene, copy, (plan, span), ticker)?);
+        }
         if whole.to_f64() >= LEAST {
             let error = |whole: Scaled| {
                 let change = change.over(whole).to_f64();

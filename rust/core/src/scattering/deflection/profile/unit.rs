@@ -45,7 +45,8 @@ impl Profile {
         let one = place(1.0);
         let (strength, pull) = (self.grid.value[one], self.grid.pull[one]);
         let octaves = exponent(strength) - exponent(self.take_energy(energy));
-        (SHARED * (f64::from(octaves) / (pull / strength) / SHARED).round()) as i32
+        let octaves = SHARED * (f64::from(octaves) / (pull / strength) / SHARED).round();
+        if octaves.abs() <= f64::from(MOST_OCTAVES) { octaves as i32 } else { 0 }
     }
     /// Whether it is a power of the distance, which has no unit of its own.
     pub(in super::super) fn is_power(&self) -> bool {

@@ -11,8 +11,10 @@ use std::collections::BTreeMap;
 const UNFELT: f64 = 0.5 * f64::EPSILON;
 
 /// Bounces, each of them harder and sooner than the one before, after which it is not waited for their end. Balls that are
-/// not quite in line with the walls have slipped out from between them by then.
+/// not quite in line with the walls have slipped out from between them by then, …
 const BOUNCES: u32 = 4096;
+/// … if the time between them has fallen to this part: that between a fast ball and slow walls has not.
+const SHRUNK: f64 = 1e-6;
 
 /// The last bounces of light spheres off heavy ones.
 #[derive(Default)]
@@ -23,8 +25,9 @@ struct Last {
     t: f64,
     /// How fast it was met.
     speed: f64,
-    /// How long after the one before.
+    /// How long after the one before, and that of the first in succession.
     after: f64,
+    first_after: f64,
     /// How many were harder and sooner in succession.
     bounces: u32,
 }
@@ -38,11 +41,15 @@ impl Squeezed {
             return false;
         }
         let (t, speed) = (collision.t, collision.speed);
-        let first = Last { t, speed, after: f64::INFINITY, bounces: 0 };
+        let first = Last { t, speed, after: f64::INFINITY, first_after: f64::INFINITY, bounces: 0 };
         let last = self.0.entry(light).or_insert(first);
         let after = (t - last.t).abs();
         let bounces = if speed > last.speed && after < last.after { last.bounces + 1 } else { 0 };
-        *last = Last { after: if bounces > 0 { after } else { f64::INFINITY }, bounces, ..first };
-        bounces >= BOUNCES
+        *last = match bounces {
+            0 => first,
+            1 => Last { after, first_after: after, bounces, ..first },
+            _ => Last { after, first_after: last.first_after, bounces, ..first },
+        };
+        bounces >= BOUNCES && after <= SHRUNK * last.first_after
     }
 }
