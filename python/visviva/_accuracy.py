@@ -12,17 +12,30 @@ import numpy as np
 from visviva.errors import AccuracyWarning
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from visviva import _core
 
 TOLERATED = 1e-2
 """Of kinetic + |potential| energy: beyond it not even the shape of an orbit can be trusted."""
+
+OF_A_STEP = 0.2
+"""A velocity that is off by this part of itself after one step tells nothing."""
+
+ROUNDING = 1e-9
+"""What moves in a step may be below this, as a part of what moves it, by the rounding of forces that cancel."""
+
+_FEW_STATES = 4_096
+"""Numbers of bodies, and of pairs of them, of all copies, for which a step more takes no time that anybody sees."""
+
+_MANY_STEPS = 1_000
+"""Six steps more are nothing beside so many."""
 
 _OF_TOLERANCE = 1e4
 """What many steps that follow `rtol` lose of an energy is not so many times it; what close passages multiply is."""
 
 _WANTED = 1e-3
 """What the step that is named aims at."""
-
 
 _UNRESOLVED = 0.1
 """An energy error from which no asymptotic law can be read."""
@@ -98,6 +111,12 @@ def warn_if_unresolved(result: dict[str, Any], asked: _core._Request, *, ensembl
 def resolves_nothing(result: dict[str, Any]) -> bool:
     """Whether a run is warned of, by its energy, an orbit, a turn of a charge or a step."""
     return result.get("energy_error", (0, 0.0))[1] > TOLERATED or "too_long" in result or "unresolved" in result
+
+
+def steps_may_be_taken_again(steps: NDArray[np.int64], each: int) -> NDArray[np.bool_]:
+    """Of copies that took so many steps, of so many bodies and pairs, or coordinates, each: where it costs nothing."""
+    few = len(steps) * each <= _FEW_STATES
+    return (steps > 0) & (few | (steps >= _MANY_STEPS))
 
 
 def times_may_be_coarse(t0: float, end: float) -> bool:

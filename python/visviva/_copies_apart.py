@@ -114,7 +114,7 @@ def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajector
     if message:
         reached = ensemble[: bounds[len(home)]] if home else None
         raise Interrupted(message, None if reached is None else reached._finished(_joined(home, bounds, plan)))
-    return finished(_joined(home, bounds, plan), asked, ensemble=True, make=ensemble._finished)
+    return finished(_joined(home, bounds, plan), asked, request.threads, ensemble=True, make=ensemble._finished)
 
 
 def _joined(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]) -> dict[str, Any]:

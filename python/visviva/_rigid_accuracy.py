@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._accuracy import TOLERATED
+from visviva._accuracy import TOLERATED, steps_may_be_taken_again
 from visviva._rigid_steps import COLUMNS, after_a_step, unresolved
+from visviva._some_copies import of_copies
 from visviva._turning import kept_by_bodies
 from visviva.errors import Error
 from visviva.status import Status
@@ -22,14 +23,17 @@ if TYPE_CHECKING:
 
 __all__ = ["look"]
 
-_FEW_PAIRS = 100
+_FEW_PAIRS = 500
 """A sum over so few pairs is nothing beside a run."""
 
 _MANY_EVALUATIONS = 2_000
 """A sum over pairs takes less than a hundredth of so many evaluations of the forces."""
 
 _ALONE = 10_000
-"""Evaluations beside which a look takes a few hundredths, where copies are looked at one by one."""
+"""Evaluations beside which a look takes a few hundredths, where copies are looked at one by one, …"""
+
+_FEW_ALONE = 16
+"""… or so few copies."""
 
 _LEAST = 1e-290
 """Smaller energies may be products with masses that are not normal numbers, and have no digits to be off by."""
@@ -39,10 +43,8 @@ _NOTHING = 1e-9
 
 _ENERGIES = ["energy", "kinetic_energy", "potential_energy"]
 
-_OWN = ("moments", "axes", "center", "orientation", "angular_velocity")
 
-
-def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
+def look(result: dict[str, Any], asked: _core._Request, scene: Scene, threads: int | None) -> None:
     """Tell in the result of a run of copies of the scene how far the worst of their energies is off at the end.
 
     Where it costs next to nothing beside the run, and the forces conserve energy. Where they do not, of steps.
@@ -52,13 +54,21 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
     bodies = asked["mass"].shape[1]
     together = asked["own_forces"] is None and bool((asked["mass"] == asked["mass"][0]).all())
     few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
-    fewest = _ALONE if not together else 0 if few else _MANY_EVALUATIONS
+    each_apart = not together and len(asked["mass"]) > _FEW_ALONE
+    fewest = _ALONE if each_apart else 0 if few else _MANY_EVALUATIONS
     finished = result["status"] == Status.OK
+    counts = result["per_trajectory"]
+    enough = counts["evaluations"] >= fewest
+    again = steps_may_be_taken_again(counts["steps"], bodies + bodies * (bodies - 1) // 2)
+    if each_apart:
+        again &= enough  # What their own forces conserve is asked of each, too.
+    if not (finished & (enough | again)).any():
+        return
     try:
         told = _tells(asked, scene)
     except Error:
         return  # A run that is done is not lost for what cannot be told of it.
-    looked_at = finished & told & (result["per_trajectory"]["evaluations"] >= fewest)
+    looked_at = finished & told & enough
     copies = np.flatnonzero(looked_at)
     groups = ([copies] if together else np.split(copies, len(copies))) if len(copies) else []
     changes, sizes, starts = np.zeros((3, len(looked_at)))
@@ -70,7 +80,7 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene) -> None:
     order = _orders()[result["stats"]["method"]]
     if error > 0.0:
         result["energy_error"] = (worst, error, abs(asked["dt"]), order)
-    doubt = unresolved(result, asked, np.flatnonzero(finished & ~told), order)
+    doubt = unresolved(result, asked, np.flatnonzero(finished & ~told & again), order, threads)
     if doubt is not None:
         result["unresolved"] = doubt
 
@@ -157,6 +167,7 @@ def _last(result: dict[str, Any]) -> list[NDArray[np.float64]]:
 def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Of states along the first axis, of bodies with the masses and forces of that copy."""
     position, velocity, *turning = states
+    rigid: Any = of_copies(asked, slice(copy, copy + 1))["rigid"]
     return _core.conserved(
         mass=asked["mass"][copy],
         forces=_forces(asked, copy),
@@ -164,15 +175,8 @@ def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]
         velocity=velocity,
         about=np.zeros(3),
         columns=_ENERGIES,
-        turning=(_rigid(asked, copy), turning[0], turning[1]),
+        turning=(rigid, turning[0], turning[1]),
     )
-
-
-def _rigid(asked: _core._Request, copy: int) -> _core._Rigid:
-    """The rigid bodies of one copy."""
-    own: Any = asked["rigid"]
-    of_copy: _core._Rigid = own | {name: own[name][copy : copy + 1] for name in _OWN}
-    return of_copy
 
 
 def _gained_in_a_step(asked: _core._Request, copy: int) -> float:
@@ -181,13 +185,10 @@ def _gained_in_a_step(asked: _core._Request, copy: int) -> float:
     Of a motion that begins at rest, where potential energies vanish, and comes back there, nothing else tells how large
     its energies are.
     """
-    request: Any = dict(asked)
-    for name in ("mass", "position", "velocity"):
-        request[name] = request[name][copy : copy + 1]
-    request |= {"rigid": _rigid(asked, copy), "radius": None, "forces": _forces(asked, copy), "own_forces": None}
+    request = of_copies(asked, slice(copy, copy + 1))
     start = [request["position"], request["velocity"], *_turning(request)]
     with suppress(Error):
-        after = after_a_step(request, start, asked["t0"], asked["dt"] or 0.0)
+        after = after_a_step(request, start, asked["t0"], asked["dt"] or 0.0, 1)
         kinetic = float(_energies(asked, copy, after)["kinetic_energy"][0])
         return kinetic if np.isfinite(kinetic) else 0.0
     return 0.0

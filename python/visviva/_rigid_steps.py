@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva._accuracy import OF_A_STEP, ROUNDING
+from visviva._some_copies import of_copies
 from visviva.errors import Error
 
 if TYPE_CHECKING:
@@ -24,15 +26,9 @@ __all__ = ["COLUMNS", "after_a_step", "unresolved"]
 COLUMNS = ("position", "velocity", "orientation", "angular_velocity")
 """The state of a scene with rigid bodies."""
 
-_TOLERATED = 0.2
-"""A velocity that is off by this part of itself after one step tells nothing."""
-
-_ROUNDING = 1e-9
-"""What a body moves, or turns, in a step may be the rounding of forces that cancel below this, of places and of 1."""
-
 
 def after_a_step(
-    asked: _core._Request, states: Sequence[NDArray[np.float64]], t0: float, dt: float
+    asked: _core._Request, states: Sequence[NDArray[np.float64]], t0: float, dt: float, threads: int | None
 ) -> list[NDArray[np.float64]]:
     """The states of all copies after the time that one step of the run takes, in steps `dt`.
 
@@ -48,31 +44,33 @@ def after_a_step(
     request["rigid"] = rigid | {"orientation": orientation, "angular_velocity": angular_velocity}
     request["times"] = np.array([t0 + np.copysign(asked["dt"] or 0.0, asked["times"][-1] - asked["t0"])])
     request |= {"end_only": True, "record": [], "continuation": None, "events": []}
-    result = _core.run(request, threads=1, progress=None, ensemble=True)
+    result = _core.run(request, threads=threads, progress=None, ensemble=True)
     return [result["final"][name] for name in COLUMNS]
 
 
 def unresolved(
-    result: dict[str, Any], asked: _core._Request, looked_at: NDArray[np.intp], order: int
+    result: dict[str, Any], asked: _core._Request, copies: NDArray[np.intp], order: int, threads: int | None
 ) -> tuple[Any, ...] | None:
     """Give the worst step of some copies that does not resolve the run, at its start or its end, as the core does."""
     dt = asked["dt"]
-    if dt is None or not len(looked_at):
+    if dt is None or not len(copies):
         return None
+    continued = asked["continuation"] is not None
+    asked = of_copies(asked, copies)
     rigid: Any = asked["rigid"]
     start = [asked["position"], asked["velocity"], rigid["orientation"], rigid["angular_velocity"]]
-    end = [result["final"][name] for name in COLUMNS]
+    end = [result["final"][name][copies] for name in COLUMNS]
     worst = None
     for by, states, t in (("first_step", start, asked["t0"]), ("step_from_the_end", end, float(asked["times"][-1]))):
-        if by == "first_step" and asked.get("continuation") is not None:
+        if by == "first_step" and continued:
             continue  # It was looked at when that began.
         with suppress(Error):
-            whole, halves = (after_a_step(asked, states, t, length) for length in (dt, 0.5 * dt))
+            whole, halves = (after_a_step(asked, states, t, length, threads) for length in (dt, 0.5 * dt))
             for which, errors in _errors(states, whole, halves, end, abs(dt)):
-                copy, body = (int(i) for i in np.unravel_index(np.argmax(errors[looked_at]), errors[looked_at].shape))
-                error = float(errors[looked_at[copy], body])
-                if error > _TOLERATED and (worst is None or error > worst[2]):
-                    worst = (int(looked_at[copy]), f"{which} {body}", error, by, abs(dt), order)
+                copy, body = (int(i) for i in np.unravel_index(np.argmax(errors), errors.shape))
+                error = float(errors[copy, body])
+                if error > OF_A_STEP and (worst is None or error > worst[2]):
+                    worst = (int(copies[copy]), f"{which} {body}", error, by, abs(dt), order)
     return worst
 
 
@@ -88,8 +86,8 @@ def _errors(
     places = np.maximum(places, 1e-3 * places.max(axis=1, keepdims=True))
     found = []
     for which, column, known in (
-        ("the velocity of body", 1, _ROUNDING * places),
-        ("the spin of rigid body", 3, _ROUNDING),
+        ("the velocity of body", 1, ROUNDING * places),
+        ("the spin of rigid body", 3, ROUNDING),
     ):
         with np.errstate(all="ignore"):
             off = np.linalg.norm(whole[column] - halves[column], axis=2)

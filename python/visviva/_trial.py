@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva import _core
+from visviva._some_copies import of_copies
 from visviva.errors import Interrupted
 from visviva.integrators import methods
 from visviva.plan import Cost
@@ -41,19 +42,13 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     rows = len(asked["times"]) + (1 if asked["end_only"] else 0)
     numbers = sum(3 * bodies if name in ("position", "velocity") else _NUMBERS.get(name, 3) for name in asked["record"])
     memory = 8 * copies * rows * numbers
-    few = tuple(asked[name][:_COPIES] for name in ("mass", "position", "velocity"))
-    own, rigid = asked["own_forces"], asked["rigid"]
-    tried = cast(
-        "_core._Request",
-        dict(asked)
-        | dict(zip(("mass", "position", "velocity"), few, strict=True))
-        | {"events": [], "record": [], "end_only": True, "max_steps": None, "continuation": None}
-        | {"own_forces": None if own is None else (own[0], own[1][:_COPIES])}
-        | {"rigid": None if rigid is None else {name: _first(value) for name, value in rigid.items()}},
-    )
+    tried = of_copies(asked, slice(0, _COPIES))
+    tried |= {"events": [], "record": [], "end_only": True, "max_steps": None}
+    rigid = asked["rigid"]
     if asked["events"] and not plan.closed_form and rigid is None:
         tried["method"] = plan.method  # without events `auto` might know a closed form
-    scale = copies / max(1, len(few[0]))
+    few = len(tried["mass"])
+    scale = copies / max(1, few)
     if plan.closed_form:
         result, seconds = run_stretch(tried, 1.0)
         return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
@@ -74,7 +69,7 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         if result["error"] or result["status"].any():
             return None
         # Massless bodies may have steps of their own, of which a stretch has at least one.
-        paths = len(few[0]) * max(1, plan.passive + min(plan.active, 1))
+        paths = few * max(1, plan.passive + min(plan.active, 1))
         few_steps = stats["steps"] < _STEPS * paths
         if fraction == 1.0 or seconds > (_LONGEST if few_steps else _SECONDS):
             break
@@ -89,11 +84,6 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         steps, exact = copies * math.floor(span / abs(step) * (1.0 + 1e-12)), True
         ratio = steps / stats["steps"] if stats["steps"] else scale
     return Cost(steps, round(stats["evaluations"] * ratio), memory, seconds * ratio, exact=exact)
-
-
-def _first(value: object) -> object:
-    """What the few copies have of an array of all."""
-    return value[:_COPIES] if isinstance(value, np.ndarray) else value
 
 
 def run_stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dict[str, Any], float]:

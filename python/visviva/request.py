@@ -300,7 +300,7 @@ def execute(
         shown = _counted(asked, ensemble) if request.progress is True else ()
         with callback(request.progress, *shown) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
-    return finished(result, asked, ensemble=ensemble, make=make)
+    return finished(result, asked, threads, ensemble=ensemble, make=make)
 
 
 def _counted(asked: _core._Request, ensemble: bool) -> tuple[str, tuple[float, float] | None]:
@@ -319,7 +319,12 @@ def _counted(asked: _core._Request, ensemble: bool) -> tuple[str, tuple[float, f
 
 
 def finished(
-    result: dict[str, Any], asked: _core._Request, *, ensemble: bool, make: Callable[[dict[str, Any]], _Result]
+    result: dict[str, Any],
+    asked: _core._Request,
+    threads: int | None,
+    *,
+    ensemble: bool,
+    make: Callable[[dict[str, Any]], _Result],
 ) -> _Result:
     """The result of what the core gave, or the core's error with the result attached."""
     if asked["events"]:
@@ -335,7 +340,7 @@ def finished(
     if asked["rigid"] is not None:
         from visviva._rigid_accuracy import look
 
-        look(result, asked, cast("Any", made)._scene)
+        look(result, asked, cast("Any", made)._scene, threads)
     warn_if_unresolved(result, asked, ensemble=ensemble)
     if times_may_be_coarse(asked["t0"], asked["times"].item(-1) if asked["times"].size else asked["t0"]):
         from visviva._coarse_times import warn_of_coarse_times

@@ -201,7 +201,7 @@ def _go_on(folder: Path, scene: Scene, request: RunRequest) -> Trajectory:
             leg = run.final
     result = joined_result(results, [part.asked for part in parts])
     result |= {"plan": plan, "error": results[-1].get("error")}
-    return finished(result, whole, ensemble=False, make=scene._finished)
+    return finished(result, whole, None, ensemble=False, make=scene._finished)
 
 
 def _run_part(

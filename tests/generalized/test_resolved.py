@@ -57,6 +57,41 @@ def test_a_weak_force_of_the_time_does_not_silence_it(method: str) -> None:
         driven.ensemble(position=[[1.0], [0.5]]).run(t=3.0, method=method, dt=0.1, threads=3)
 
 
+@pytest.mark.parametrize("further", ["drive", "dissipation"])
+def test_eulers_method_is_not_believed_at_rest(further: str) -> None:
+    """One of its steps moves what rests from where it is, two halves of it do the same: 4.7e11 for 1 came silently."""
+
+    def energies(q: Any, v: Any, t: Any) -> Any:
+        return 0.5 * v[0] ** 2 - 242.0 * q[0] ** 2 + (1e-9 * q[0] * np.cos(t) if further == "drive" else 0.0)
+
+    friction = {"dissipation": lambda q, v, t: 1e-9 * v[0] ** 2} if further == "dissipation" else {}
+    oscillator = vv.Lagrangian(energies, ["x"], position=[1.0], **friction)
+    # ωdt = 2.2; at both ends of four steps it is faster than at any other time.
+    for t in (0.1, 0.2, 1.0, 3.0):
+        with pytest.warns(vv.AccuracyWarning, match="the velocities are off by"):
+            oscillator.run(t=t, method="euler", dt=0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        oscillator.run(t=0.3, method="euler", dt=0.001)
+
+
+def test_steps_are_taken_again_where_that_takes_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many copies with few steps it would take as long as the run."""
+    system = vv.Lagrangian
+    runs, run = [], system._run
+
+    def counted(*arguments: Any, **keywords: Any) -> Any:
+        runs.append(len(arguments[2]))
+        return run(*arguments, **keywords)
+
+    monkeypatch.setattr(system, "_run", counted)
+    moving = vv.systems.moving_pivot(position=[0.1])
+    for copies, t, looked_at in ((2048, 0.1, True), (2049, 0.1, False), (2049, 10.0, True)):
+        runs.clear()
+        moving.ensemble(position=np.linspace(0.0, 1.0, copies)[:, None]).run(t=t, method="rk4", dt=0.01)
+        assert runs == [copies] * (1 + 4 * looked_at)
+
+
 def test_a_motion_that_has_blown_up_beyond_all_energies_is_said() -> None:
     """Squares of 1e200 are beyond float64, and told nothing."""
     driven = vv.Lagrangian(lambda q, v, t: 0.5 * v[0] ** 2 - 2e4 * q[0] ** 2 + q[0] * np.cos(t), ["x"], position=[1.0])

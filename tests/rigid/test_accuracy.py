@@ -56,19 +56,22 @@ def test_the_copy_is_named(own: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("own", ["mass", "parameters"])
 def test_a_short_run_of_copies_with_masses_or_forces_of_their_own_is_not_looked_at(own: str) -> None:
-    """To look at each by itself would take longer than the run."""
-    start = {"velocity": [PASSAGE.particles.velocity] * 2}
-    masses, constants = {"mass": [[0.1, 10.0], [0.2, 10.0]]}, {"parameters": {"Gravity": {"G": [1.0, 1.01]}}}
-    given = {"mass": masses, "parameters": constants}
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        out = PASSAGE.ensemble(**start, **given[own]).run(t=10.0, dt=0.1)
-    assert np.abs(out.energy[:, -1] / out.energy[:, 0] - 1.0).max() > 1.0
+    """To look at each of many by itself would take longer than the run."""
+    for copies, looked_at in ((2, True), (16, True), (17, False)):
+        start = {"velocity": [PASSAGE.particles.velocity] * copies}
+        masses = {"mass": [[0.1 + 0.1 * k, 10.0] for k in range(copies)]}
+        constants = {"parameters": {"Gravity": {"G": 1.0 + 0.01 * np.arange(copies)}}}
+        given = {"mass": masses, "parameters": constants}
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            out = PASSAGE.ensemble(**start, **given[own]).run(t=10.0, dt=0.1)
+        assert np.abs(out.energy[:, -1] / out.energy[:, 0] - 1.0).max() > 1.0
+        assert [each.category for each in caught] == [vv.AccuracyWarning] * looked_at
 
 
-@pytest.mark.parametrize(("bodies", "t", "looked_at"), [(14, 10.0, True), (15, 10.0, False), (15, 30.0, True)])
-def test_of_more_than_a_hundred_pairs_a_short_run_is_not_looked_at(bodies: int, t: float, looked_at: bool) -> None:
-    """A sum over 105 pairs is something beside 1700 evaluations of the forces, over 91, or beside 5100, it is not."""
+@pytest.mark.parametrize(("bodies", "t", "looked_at"), [(32, 10.0, True), (33, 10.0, False), (33, 30.0, True)])
+def test_of_more_than_five_hundred_pairs_a_short_run_is_not_looked_at(bodies: int, t: float, looked_at: bool) -> None:
+    """A sum over 528 pairs is something beside 1700 evaluations of the forces, over 496, or beside 5100, it is not."""
     apart = 1e3 * np.arange(bodies - 1)[:, None] * [1.0, 0.0, 0.0]
     rest = vv.RigidBodies(np.full(bodies - 1, 10.0), moments=[[2.0, 3.0, 4.0]] * (bodies - 1), position=apart)
     with warnings.catch_warnings(record=True) as caught:
@@ -173,6 +176,30 @@ def test_weak_forces_that_keep_no_energy_do_not_silence_it(method: str, weak: st
     with pytest.warns(vv.AccuracyWarning, match=r"in copy [01], after") as caught:
         copies.run(t=0.5, method=method, dt=0.04, threads=3)
     assert len(caught) == 1
+
+
+def test_steps_are_taken_again_where_that_takes_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many copies with few steps it would take as long as the run; what goes on was looked at when it began."""
+    from visviva import _rigid_steps
+
+    taken = []
+
+    def counted(*arguments):
+        taken.append(len(arguments[0]["mass"]))
+        return after_a_step(*arguments)
+
+    after_a_step = _rigid_steps.after_a_step
+    monkeypatch.setattr(_rigid_steps, "after_a_step", counted)
+    scene = vv.Scene(BODY, vv.AppliedTorque([0.0, 0.0, 1.0]))
+    how = {"method": "rk4", "dt": 0.01}
+    for copies, t, looked_at in ((4096, 0.1, True), (4097, 0.1, False), (4097, 10.0, True)):
+        taken.clear()
+        scene.ensemble(velocity=np.zeros((copies, 1, 3))).run(t=t, **how)
+        assert taken == [copies] * 4 * looked_at
+    half = scene.run(t=1.0, **how)
+    taken.clear()
+    half.final.run(t=2.0, **how)
+    assert taken == [1, 1]
 
 
 def test_a_body_that_a_torque_turns_from_rest_is_not_blamed() -> None:

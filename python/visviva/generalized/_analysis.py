@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from visviva._arrays import float_array
 from visviva._html import Record, Sheet, Shown, as_text, briefly
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._constrained_motions import BALANCED, Constrained
 from visviva.generalized._matrices import Sizes, matrices, matrices_along, rounding
 from visviva.generalized._multiple_zeros import at_rest, left_open, units
 
@@ -20,19 +21,28 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._matrices import Matrices
 
-__all__ = ["Linearization", "PoincareSection", "linearization"]
+__all__ = [
+    "Linearization",
+    "PoincareSection",
+    "along",
+    "eigenmodes",
+    "linearization",
+    "linearization_of",
+    "of_matrices",
+]
 
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
 _ON_THE_AXIS = 1e-7
-#: Forces below this part of what they are made of are round-off, or that of the place.
-_BALANCED = 1e-8
+#: Displacements are along constraints to this part of themselves.
+_ALONG = 1e-8
 
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Linearization(Shown):
-    """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0.
+    """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0; on constraints along their d free directions.
 
     Units: those of the system; frequencies in radians per time.
 
@@ -40,19 +50,21 @@ class Linearization(Shown):
     ----------
     position : ndarray, shape (n,)
     mass, damping, stiffness : ndarray, shape (n, n)
-        M, C (with gyroscopic terms) and K.
-    eigenvalues : ndarray of complex, shape (2n,)
-        λ of motions as exp(λ t).
-    frequencies : ndarray, shape (at most n,)
+        M, C (with gyroscopic terms) and K, which has what reactions of constraints do where these bend.
+    eigenvalues : ndarray of complex, shape (2d,)
+        λ of motions as exp(λ t); d is n where there are no constraints.
+    frequencies : ndarray, shape (at most d,)
         Angular frequencies of what oscillates, ascending.
-    modes : ndarray, shape (n, n), or None
+    modes : ndarray, shape (d, n), or None
         Rows with ξᵀ M ξ = 1, in the order of the squared frequencies; None with damping or gyroscopic terms.
-    squares : ndarray, shape (n,), or None
+    squares : ndarray, shape (d,), or None
         Squared frequencies, those of unstable modes negative, and 0 where they are but round-off.
     rounding : ndarray, shape (n, n)
         By how much K may be off: what it changes by where place and parameters change in their last digits.
     coordinates : tuple of str
         What the numbers of places and modes are of.
+    tangent : ndarray, shape (n, d), or None
+        With constraints the free directions, in columns.
 
     References
     ----------
@@ -80,6 +92,7 @@ class Linearization(Shown):
     squares: NDArray[np.float64] | None
     rounding: NDArray[np.float64]
     coordinates: tuple[str, ...]
+    tangent: NDArray[np.float64] | None = None
 
     def __repr__(self) -> str:
         return f"Linearization(frequencies={briefly(self.frequencies)}, stable={self.stable})"
@@ -94,7 +107,7 @@ class Linearization(Shown):
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
-        """Angular frequencies of what oscillates, ascending, shape (at most n,), in radians per time."""
+        """Angular frequencies of what oscillates, ascending, shape (at most d,), in radians per time."""
         if self.squares is not None:
             real: NDArray[np.float64] = np.sqrt(self.squares[self.squares > 0.0])
             return real
@@ -107,7 +120,16 @@ class Linearization(Shown):
         """Whether no small motion grows, as the linear equations tell; one that neither grows nor returns counts."""
         from visviva.generalized._stability import is_stable
 
-        return is_stable(self.mass, self.damping, self.stiffness, self.rounding)
+        return is_stable(*self._free_matrices())
+
+    def _free_matrices(
+        self,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Give M, C and K along the free directions, and the rounding of K."""
+        if self.tangent is None:
+            return self.mass, self.damping, self.stiffness, self.rounding
+        mass, damping, stiffness = (along(self.tangent, each) for each in (self.mass, self.damping, self.stiffness))
+        return mass, damping, stiffness, along(np.abs(self.tangent), self.rounding)
 
     def at(self, t: ArrayLike, displacement: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Small motions at any time, exactly.
@@ -128,7 +150,7 @@ class Linearization(Shown):
         Raises
         ------
         InvalidInput
-            With damping or gyroscopic terms.
+            With damping or gyroscopic terms; for ξ or ξ̇ across constraints.
 
         Examples
         --------
@@ -143,6 +165,8 @@ class Linearization(Shown):
             )
         n = len(self.position)
         start, rate = float_array("displacement", displacement, (n,)), float_array("velocity", velocity, (n,))
+        for name, given in (("displacement", start), ("velocity", rate)):
+            self._check_along(name, given)
         weights = self.modes @ self.mass
         times = np.asarray(float_array("t", t, None))[..., None]
         root = np.sqrt(np.abs(self.squares))
@@ -154,6 +178,17 @@ class Linearization(Shown):
         amplitudes = even * (weights @ start) + np.where(still, times, odd / safe) * (weights @ rate)
         moved: NDArray[np.float64] = amplitudes @ self.modes
         return moved
+
+    def _check_along(self, name: str, given: NDArray[np.float64]) -> None:
+        """Refuse what is not along the constraints."""
+        if self.tangent is None or not given.any():
+            return
+        across = np.abs(given - self.tangent @ (np.linalg.pinv(self.tangent) @ given))
+        if (across > _ALONG * np.abs(given).max()).any():
+            worst = self.coordinates[int(np.argmax(across))]
+            raise InvalidInput(
+                name, f"expected numbers along the constraints, and that of {worst!r} is off by {across.max():.3g}"
+            )
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the modes: how far each coordinate goes, in the order of the coordinates, a line for each mode.
@@ -274,14 +309,17 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
     """Small motions of a Lagrangian about a place."""
     n = len(system.coordinates)
     place = system._start()[:n] if at is None else float_array("at", at, (n,))
+    if system._constraints():
+        return linearization_of(Constrained(system), place)
     sizes = Sizes(system) if sizes is None else sizes
     found = matrices(system, place)
-    small = _core.eigenmodes(found.mass, found.damping, found.stiffness)
+    # Which refuses what has no derivatives.
+    small = eigenmodes(found, None)
     # What rounding of the place, and of what a force is the sum of, makes of it: in any units, and next to zero too.
     scale = np.abs(found.stiffness) @ np.abs(place)
-    off = ~(np.abs(found.forces) <= _BALANCED * scale)
+    off = ~(np.abs(found.forces) <= BALANCED * scale)
     if off.any():
-        off = ~(np.abs(found.forces) <= _BALANCED * (scale + sizes.forces(place[None])[0]))
+        off = ~(np.abs(found.forces) <= BALANCED * (scale + sizes.forces(place[None])[0]))
     if off.any():
         worst = int(np.argmax(np.where(off, np.abs(found.forces), 0.0)))
         raise InvalidInput(
@@ -298,14 +336,45 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
         # A zero of higher order is told by forces to some of its digits only, and so is K there.
         _, beside = matrices_along(system, np.stack([place + left, place - left]))
         off_by = np.fmax(off_by, np.abs(beside - found.stiffness).max(axis=0))
+    return of_matrices(place, (found, off_by, None), small, system.coordinates)
+
+
+def linearization_of(constrained: Constrained, place: NDArray[np.float64]) -> Linearization:
+    """Small motions of a Lagrangian on its constraints about a place."""
+    balance = constrained.balance(place)
+    small = eigenmodes(balance.matrices, balance.tangent)
+    known = (balance.matrices, balance.rounding, balance.tangent)
+    return of_matrices(place, known, small, constrained.free.coordinates)
+
+
+def along(tangent: NDArray[np.float64] | None, matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give a matrix along free directions."""
+    reduced: NDArray[np.float64] = matrix if tangent is None else tangent.T @ matrix @ tangent
+    return reduced
+
+
+def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> dict[str, Any]:
+    """Eigenvalues of M, C and K along free directions, and squares and modes where these are real."""
+    return _core.eigenmodes(*(along(tangent, matrix) for matrix in (found.mass, found.damping, found.stiffness)))
+
+
+def of_matrices(
+    place: NDArray[np.float64],
+    known: tuple[Matrices, NDArray[np.float64], NDArray[np.float64] | None],
+    small: dict[str, Any],
+    coordinates: tuple[str, ...],
+) -> Linearization:
+    """Small motions of matrices at a place, known to a rounding of K, along free directions."""
+    found, off_by, tangent = known
     squares: NDArray[np.float64] | None = None
     modes: NDArray[np.float64] | None = None
     if small["symmetric"] is not None:
         squares, modes = small["symmetric"]
+        modes = modes if tangent is None else modes @ tangent.T
     if squares is not None and modes is not None:
         # Of a level direction rounding makes a square of its own size, and a frequency of its root.
-        known = ((np.abs(modes) @ off_by) * np.abs(modes)).sum(axis=1)
-        squares = np.where(np.abs(squares) > known, squares, 0.0)
+        least = ((np.abs(modes) @ off_by) * np.abs(modes)).sum(axis=1)
+        squares = np.where(np.abs(squares) > least, squares, 0.0)
     return Linearization(
         place,
         found.mass,
@@ -315,5 +384,6 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
         modes,
         squares,
         off_by,
-        tuple(system.coordinates),
+        coordinates,
+        tangent,
     )

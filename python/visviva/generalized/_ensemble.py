@@ -210,7 +210,7 @@ class GeneralizedEnsemble(Shown):
             raise Interrupted("the ensemble was interrupted", out)
         lasts = out._states[:, -1], float(out.t[-1])
         try:
-            warn_if_unresolved(self.system, asked, self._states, lasts, self._parameters)
+            warn_if_unresolved(self.system, asked, self._states, lasts, self._parameters, threads)
         except Interrupted as interrupted:
             interrupted.trajectory = out
             raise

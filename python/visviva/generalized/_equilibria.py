@@ -15,7 +15,8 @@ from visviva._arrays import float_array
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._analysis import linearization
+from visviva.generalized._analysis import linearization, linearization_of
+from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, settled
@@ -106,6 +107,8 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
+    if system._constraints():
+        return _of_constrained(system, starts, everywhere=near is None)
     sizes = Sizes(system)
     reached = _reached(system, starts, sizes)
     distinguishing = np.ones(n, dtype=bool)
@@ -114,18 +117,9 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
         reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
-    # Sizes of coordinates: those of the places that are looked at and found.
-    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
-    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
-    # What is 0 but for round-off is shown as such.
-    reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
-    places: list[NDArray[np.float64]] = []
-    while len(reached):
-        places.append(reached[0])
-        reached = reached[((np.abs(reached - reached[0]) > SAME * size) & distinguishing).any(axis=1)]
     results: list[Equilibrium] = []
     without_mass, without_slopes = [], []
-    for place in sorted(places, key=tuple):
+    for place in _once(reached, starts, distinguishing):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue
@@ -147,6 +141,52 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
             f"the forces vanish at {without_mass[0].round(6).tolist()}, where the mass matrix is singular, as at the "
             "pole of spherical coordinates: these cannot describe small motions there; use others, such as x and y",
         )
+    return results
+
+
+def _once(
+    reached: NDArray[np.float64], starts: NDArray[np.float64], distinguishing: NDArray[np.bool_]
+) -> list[NDArray[np.float64]]:
+    """Each place (R, n) once, in order, by the coordinates that tell them apart."""
+    # Sizes of coordinates: those of the places that are looked at and found.
+    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
+    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
+    # What is 0 but for round-off is shown as such.
+    reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
+    places: list[NDArray[np.float64]] = []
+    while len(reached):
+        places.append(reached[0])
+        reached = reached[((np.abs(reached - reached[0]) > SAME * size) & distinguishing).any(axis=1)]
+    return sorted(places, key=tuple)
+
+
+def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool) -> list[Equilibrium]:
+    """Equilibria on constraints, from starts, or of those within what starts all over a turn reach on them."""
+    constrained = Constrained(system)
+    rolling = constrained.all > constrained.holonomic
+    if everywhere and rolling:
+        # Where something rolls, equilibria fill whole surfaces: one is told, next to the start.
+        starts = system._start()[None, : len(system.coordinates)]
+    reached, far = constrained.reached(starts)
+    if everywhere:
+        reached = reached[(np.abs(reached) <= np.fmax(np.pi, far) + 1e-6).all(axis=1)]
+    n = len(system.coordinates)
+    results, refused = [], []
+    for place in _once(reached, starts, np.ones(n, dtype=bool)):
+        try:
+            small = linearization_of(constrained, place)
+        except InvalidInput as refusal:
+            refused.append(refusal)
+            continue
+        leaves, free = False, small._free_matrices()
+        about = level_and_held(*free)
+        if about is not None and small.tangent is not None and not rolling:
+            energy = constrained.along(place, small.tangent)
+            leaves = bool((rises(energy, np.zeros(small.tangent.shape[1]), about, free[-1]) < 0.0).any())
+        momentum = constrained.free.at(position=place, velocity=np.zeros(n)).momentum
+        results.append(Equilibrium(place, small.stable and not leaves, small.frequencies, momentum))
+    if refused and not results:
+        raise refused[0]
     return results
 
 

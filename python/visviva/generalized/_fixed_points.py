@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._higher_orders import Curvatures
 
-__all__ = ["fixed_points"]
+__all__ = ["fixed_points", "rates_and_slopes", "rounding_of_slopes", "slopes_at"]
 
 #: Newton's steps: enough for the linear way to a zero of the twelfth order, by a twelfth each time, to `SAME`.
 _STEPS = 240
 #: Singular values below this part of the largest are none.
 _SINGULAR = 1e-13
-#: A step is as long as the largest coordinate of a turn at most.
+#: A step is as long as the largest coordinate of a turn at most, or of the start.
 _LONGEST = np.pi
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
@@ -84,9 +84,10 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
 def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where Newton's method ends from each state, if it comes to an equilibrium."""
     step = np.full(states.shape, np.inf)
+    longest = max(_LONGEST, float(np.abs(states).max(initial=0.0)))
     at_kinks = [states[:0]]
     for _ in range(_STEPS):
-        rates, slopes = _rates_and_slopes(system, states)
+        rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
         at_kinks.append(states[(rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))])
         finite = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
@@ -98,10 +99,10 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.flo
         most[most == 0.0] = 1.0
         step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), rates / most[..., 0])
         length = np.abs(step).max(axis=1, keepdims=True)
-        states = states + step * (_LONGEST / np.maximum(length, _LONGEST))
+        states = states + step * (longest / np.maximum(length, longest))
         if (length <= 1e-15 * (1.0 + np.abs(states).max(axis=1, keepdims=True))).all():
             break
-    rates, slopes = _rates_and_slopes(system, states)
+    rates, slopes = rates_and_slopes(system, states)
     made_of = np.einsum("sij,sj->si", np.abs(slopes), np.abs(states) + np.abs(step))
     settled = (np.abs(step) <= SAME * (1.0 + np.abs(states))).all(axis=1)
     least = np.finfo(float).eps * np.abs(slopes).max(axis=(1, 2), initial=0.0)[:, None]
@@ -109,7 +110,7 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.flo
     return np.concatenate([states[kept], *at_kinks])
 
 
-def _rates_and_slopes(
+def rates_and_slopes(
     system: Hamiltonian, states: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rates (S, 2n) at states, and their derivatives (S, 2n, 2n)."""
@@ -127,7 +128,7 @@ def _equilibrium(
     system: Hamiltonian, energy: Energy, state: NDArray[np.float64], size: NDArray[np.float64]
 ) -> Equilibrium:
     n = len(system.coordinates)
-    slopes = _slopes(system, state)
+    slopes = slopes_at(system, state)
     if not np.isfinite(slopes).all():
         raise InvalidInput(
             "H",
@@ -135,7 +136,7 @@ def _equilibrium(
             "there is a kink, as that of |q|; round it off, as by sqrt(q² + width²), or look elsewhere by near",
         )
     # Of rates with forces that no function has, nothing but the linear equations tells.
-    second, off = _second(slopes[None])[0], np.abs(_second(_rounding(system, state, size, slopes)[None])[0])
+    second, off = _second(slopes[None])[0], np.abs(_second(rounding_of_slopes(system, state, size, slopes)[None])[0])
     left = left_open(energy, state, size, np.ones(2 * n))
     if left is not None:
         beside = energy.slopes(np.stack([state + left, state - left]))[1]
@@ -159,14 +160,14 @@ def _equilibrium(
     return Equilibrium(state[:n], stable, frequencies, state[n:])
 
 
-def _slopes(
+def slopes_at(
     system: Hamiltonian, state: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """Derivatives of the rates (2n, 2n) at a state, and what they come to where their formulas have none."""
     width = len(state)
 
     def evaluate(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        rates, slopes = _rates_and_slopes(system, states, parameters)
+        rates, slopes = rates_and_slopes(system, states, parameters)
         return np.concatenate([rates, slopes.reshape(len(states), -1)], axis=1)
 
     return with_limits(evaluate, state, width)[width:].reshape(width, width)
@@ -183,14 +184,14 @@ def _rates_of(second: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([second[n:], -second[:n]])
 
 
-def _rounding(
+def rounding_of_slopes(
     system: Hamiltonian, state: NDArray[np.float64], size: NDArray[np.float64], slopes: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Give what the last digits of the state, as they are found, and of parameters make of the derivatives of rates."""
     off = LAST_DIGITS * np.abs(slopes)
     n = len(state)
     for signs in nudges(n + len(system._values)):
-        other = _slopes(system, state + _FOUND * size * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
+        other = slopes_at(system, state + _FOUND * size * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
         off = np.fmax(off, np.abs(other - slopes))
     return off
 
@@ -202,7 +203,7 @@ def _energy(system: Hamiltonian) -> Energy:
     sums = [terms_of(c, [each]) for each in row[1 : 1 + 2 * n]]
 
     def slopes(states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        rates, derivatives = _rates_and_slopes(system, states)
+        rates, derivatives = rates_and_slopes(system, states)
         return np.concatenate([-rates[:, n:], rates[:, :n]], axis=1), _second(derivatives)
 
     def sizes(states: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cache
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._accuracy import limit_of_energies, warn_of_energy, warn_of_step
+from visviva import _core
+from visviva._accuracy import (
+    OF_A_STEP,
+    ROUNDING,
+    limit_of_energies,
+    steps_may_be_taken_again,
+    warn_of_energy,
+    warn_of_step,
+)
 from visviva.errors import Interrupted
 
 if TYPE_CHECKING:
@@ -20,11 +30,28 @@ __all__ = ["warn_if_unresolved"]
 _ON_THE_WAY = 17
 """Times at which a motion is looked at whose energies at its ends may be no measure."""
 
-_OF_A_STEP = 0.2
-"""Velocities that are off by this part of themselves after one step tell nothing."""
 
-_ROUNDING = 1e-9
-"""Velocities below this part of those that the energies would give are the rounding of forces that cancel."""
+@dataclass(frozen=True)
+class _Done:
+    """A run of copies from states (B, 2n) to others at a time, with what was asked, parameters and threads."""
+
+    system: GeneralizedSystem
+    asked: dict[str, Any]
+    starts: NDArray[np.float64]
+    lasts: tuple[NDArray[np.float64], float]
+    values: NDArray[np.float64]
+    threads: int | None
+
+    def again(
+        self, changed: dict[str, Any], states: NDArray[np.float64], copies: slice = slice(None)
+    ) -> NDArray[np.float64]:
+        """The states (copies, times, 2n) of copies that are run once more, otherwise; fewer times where it fails."""
+        asked = self.asked | {"events": [], "looked_for": ()} | changed
+        result = self.system._run(asked, states[copies], self.values[copies], self.threads, progress=False)
+        if result["interrupted"]:
+            raise Interrupted("the look at a run that was done was interrupted")
+        y: NDArray[np.float64] = result["y"].reshape(len(states[copies]), -1, states.shape[1])
+        return y
 
 
 def warn_if_unresolved(
@@ -33,6 +60,7 @@ def warn_if_unresolved(
     starts: NDArray[np.float64],
     lasts: tuple[NDArray[np.float64], float],
     values: NDArray[np.float64],
+    threads: int | None,
 ) -> None:
     """Warn of runs from states (B, 2n) to others at a time whose energies differ by much of what they are sums of.
 
@@ -46,12 +74,13 @@ def warn_if_unresolved(
     # What is exact need not be looked at.
     if asked["method"] == "matrix_exponential":
         return
+    done = _Done(system, asked, starts, lasts, values, threads)
     if not system._structure["conserves_energy"]:
         if asked["dt"] is not None:
-            _look_at_steps(system, asked, starts, lasts, values)
+            _look_at_steps(done)
         return
     copies, (states, t) = len(starts), lasts
-    if copies == 1 and _is_plainly_kept(system, asked, starts, lasts, values):
+    if copies == 1 and _is_plainly_kept(done):
         return
     times = np.repeat([system.t0, t], copies)
     energies, sizes = _energies(system, times, np.concatenate([starts, states]), np.concatenate([values, values]))
@@ -65,75 +94,69 @@ def warn_if_unresolved(
         if not errors[copy] > limit:
             return
         # A motion that begins at rest and comes back has no energies at its ends to be compared with.
-        error = float(changes[copy] / max(sizes[copy], _largest(system, asked, starts[copy], t, values[copy])))
+        error = float(changes[copy] / max(sizes[copy], _largest(done, int(copy))))
         if error > limit:
             warn_of_energy(asked["dt"], error, int(copy) if copies > 1 else None)
             return
 
 
-def _look_at_steps(
-    system: GeneralizedSystem,
-    asked: dict[str, Any],
-    starts: NDArray[np.float64],
-    lasts: tuple[NDArray[np.float64], float],
-    values: NDArray[np.float64],
-) -> None:
+def _look_at_steps(done: _Done) -> None:
     """Warn of the copy whose first step, or one that would follow on the last, is off by most of its velocities."""
-    errors = [_off_after_a_step(system, asked, before, lasts, values) for before in ((starts, system.t0), lasts)]
+    asked, (start, end) = done.asked, done.asked["span"]
+    copies, numbers = done.starts.shape
+    steps = np.full(copies, np.ceil(abs(end - start) / asked["dt"]), dtype=np.int64)
+    if not steps_may_be_taken_again(steps, numbers).any():
+        return
+    errors = [_off_after_a_step(done, before) for before in ((done.starts, done.system.t0), done.lasts)]
     at_end = bool(np.max(errors[1]) > np.max(errors[0]))
     copy = int(np.argmax(errors[at_end]))
     error = float(errors[at_end][copy])
-    if error > _OF_A_STEP:
-        warn_of_step(asked["dt"], error, at_end, copy if len(starts) > 1 else None)
+    if error > OF_A_STEP:
+        warn_of_step(asked["dt"], error, at_end, copy if copies > 1 else None)
 
 
-def _off_after_a_step(
-    system: GeneralizedSystem,
-    asked: dict[str, Any],
-    before: tuple[NDArray[np.float64], float],
-    end: tuple[NDArray[np.float64], float],
-    values: NDArray[np.float64],
-) -> NDArray[np.float64]:
+@cache
+def _of_first_order() -> frozenset[str]:
+    """The methods of which two steps are looked at.
+
+    They move what rests from where it is, which forces notice in the next one.
+    """
+    return frozenset(method["name"] for method in _core.methods() if method["order"] == 1)
+
+
+def _off_after_a_step(done: _Done, before: tuple[NDArray[np.float64], float]) -> NDArray[np.float64]:
     """How far velocities (B,) are off after one step, by two of half its length, in the metric of the kinetic energy.
 
     As parts of the largest on the way, or at the end: what is lost where hardly anything moves yet is nothing.
     """
-    states, t = before
-    n, step = len(system.coordinates), float(np.copysign(asked["dt"], asked["span"][1] - asked["span"][0]))
-    way = asked | {"span": (t, t + step), "outputs": np.array([t + step]), "events": [], "looked_for": ()}
+    system, asked, (states, t) = done.system, done.asked, before
+    n, dt = len(system.coordinates), asked["dt"]
+    steps = 2 if asked["method"] in _of_first_order() else 1
+    at = t + steps * float(np.copysign(dt, asked["span"][1] - asked["span"][0]))
     after = []
-    for dt in (asked["dt"], 0.5 * asked["dt"]):
-        again = system._run(way | {"dt": dt}, states, values, 1, progress=False)
-        if again["interrupted"]:
-            raise Interrupted("the look at the steps was interrupted")
-        y = again["y"].reshape(len(states), -1, 2 * n)
+    for length in (dt, 0.5 * dt):
+        y = done.again({"span": (t, at), "outputs": np.array([at]), "dt": length}, states)
         after.append(y[:, -1] if y.shape[1] else np.full_like(states, np.nan))
     with np.errstate(all="ignore"):
-        told = [(after[0], t + step), (after[1], t + step), before, end]
+        told = [(after[0], at), (after[1], at), before, done.lasts]
         p = np.stack([y[:, n:] for y, _ in told])
-        v = np.stack([_columns(system, y, at, values)[:, :n] for y, at in told])
+        v = np.stack([_columns(system, y, time, done.values)[:, :n] for y, time in told])
         # Products of those of a motion that has blown up may be beyond all numbers.
         p_largest, v_largest = (np.abs(x).max(axis=(0, 2)) for x in (p, v))
         p, v = p / p_largest[:, None], v / v_largest[:, None]
         off = np.abs(((p[0] - p[1]) * (v[0] - v[1])).sum(axis=1))
         errors: NDArray[np.float64] = np.sqrt(off / np.abs((p * v).sum(axis=2)).max(axis=0))
-        _, energies = _energies(system, np.full(len(states), t), states, values)
-        rounding = np.isfinite(energies) & (off * p_largest * v_largest <= _ROUNDING**2 * energies)
+        _, energies = _energies(system, np.full(len(states), t), states, done.values)
+        rounding = np.isfinite(energies) & (off * p_largest * v_largest <= ROUNDING**2 * energies)
         errors[~np.isfinite(errors) | rounding] = 0.0
     return errors
 
 
-def _is_plainly_kept(
-    system: GeneralizedSystem,
-    asked: dict[str, Any],
-    start: NDArray[np.float64],
-    last: tuple[NDArray[np.float64], float],
-    values: NDArray[np.float64],
-) -> bool:
+def _is_plainly_kept(done: _Done) -> bool:
     """Whether one run's energy is plainly what it was: arithmetic of numbers, a tenth of that of arrays of two."""
-    state, t = last
-    states = np.concatenate([start, state])
-    columns = system._model.columns(np.array([system.t0, t]), states, values).tolist()
+    system, (state, t) = done.system, done.lasts
+    states = np.concatenate([done.starts, state])
+    columns = system._model.columns(np.array([system.t0, t]), states, done.values).tolist()
     n, (first, second) = len(system.coordinates), states.tolist()
     energies, sizes = [], []
     for column, row in zip(columns, (first, second), strict=True):
@@ -141,20 +164,16 @@ def _is_plainly_kept(
         energies.append(column[n])
         sizes.append(kinetic + abs(column[n] - kinetic))
     # Half of what is warned of, lest it hang on the order of a sum; what is no number is not below it.
-    return bool(abs(energies[1] - energies[0]) <= 0.5 * limit_of_energies(asked["dt"]) * max(sizes))
+    return bool(abs(energies[1] - energies[0]) <= 0.5 * limit_of_energies(done.asked["dt"]) * max(sizes))
 
 
-def _largest(
-    system: GeneralizedSystem, asked: dict[str, Any], start: NDArray[np.float64], t: float, values: NDArray[np.float64]
-) -> float:
-    """The largest size of energies on the way to that time, which is run again for it."""
+def _largest(done: _Done, copy: int) -> float:
+    """The largest size of energies of a copy on the way to its end, which is run again for it."""
+    system, (_, t) = done.system, done.lasts
     outputs = np.linspace(system.t0, t, _ON_THE_WAY)
-    way = asked | {"outputs": outputs, "span": (system.t0, t), "events": []}
-    again = system._run(way, start[None, :], values[None, :], 1, progress=False)
-    if again["interrupted"]:
-        raise Interrupted("the look at the energies was interrupted")
-    states = again["y"].reshape(-1, len(start))
-    _, sizes = _energies(system, outputs[: len(states)], states, np.tile(values, (len(states), 1)))
+    way = {"outputs": outputs, "span": (system.t0, t)}
+    states = done.again(way, done.starts, slice(copy, copy + 1))[0]
+    _, sizes = _energies(system, outputs[: len(states)], states, np.tile(done.values[copy], (len(states), 1)))
     return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
 
 

@@ -226,7 +226,7 @@ class Runs(States):
         if len(out.t):
             lasts = out._states[-1:], float(out.t[-1])
             try:
-                warn_if_unresolved(as_system(self), asked, start[None, :], lasts, self._values[None, :])
+                warn_if_unresolved(as_system(self), asked, start[None, :], lasts, self._values[None, :], 1)
             except Interrupted as interrupted:
                 interrupted.trajectory = out
                 raise

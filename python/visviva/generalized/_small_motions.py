@@ -49,11 +49,18 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For a place that is none; where equations depend on the time.
+            For a place that is none, or is off constraints; where constraints depend on each other there; where
+            equations or constraints depend on the time.
+
+        Notes
+        -----
+        With constraints, displacements ξ are along their free directions, and K is less the derivatives of the
+        reactions Aᵀλ, which balance the forces. Nonholonomic ones hold displacements as well as velocities.
 
         References
         ----------
-        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3. Reactions: Ju. I. Neimark & N. A.
+        Fufaev, *Dynamics of Nonholonomic Systems* (1972), chapter III.
 
         Examples
         --------
@@ -61,13 +68,19 @@ class SmallMotions:
         >>> vv.systems.double_pendulum().linearize(at=[0.0, 0.0]).frequencies.round(6)
         array([2.397199, 5.787351])
         """
-        return linearization(self._by_velocities(), at)
+        of = self._by_velocities()
+        if of is None:
+            from visviva.generalized._motions_by_momenta import linearization_by_momenta
+
+            return linearization_by_momenta(self, at)
+        return linearization(of, at)
 
     def equilibria(self: Any, near: ArrayLike | None = None) -> list[Equilibrium]:
         """Places where the system stays, their stability and their frequencies.
 
         Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
-        others, the places that the search comes to are told.
+        others, the places that the search comes to are told. On constraints they are where reactions balance forces;
+        with nonholonomic ones they fill surfaces, and without `near` one is told, next to the start.
 
         Units: those of the system.
 
@@ -84,8 +97,8 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For constraints: eliminate them; where equations depend on the time; if the only ones are places where the
-            mass matrix is singular.
+            Where equations or constraints depend on the time; if the only ones are places where the mass matrix is
+            singular, or constraints depend on each other.
 
         References
         ----------
@@ -133,6 +146,10 @@ class SmallMotions:
             (self.position if self.position is not None else np.zeros(len(self.coordinates))) if near is None else near
         )
         of = self._by_velocities()
+        if of is None:
+            from visviva.generalized._motions_by_momenta import normal_modes_by_momenta
+
+            return normal_modes_by_momenta(self, place)
         found = equilibria(of, place)
         if not found:
             raise InvalidInput("near", "Newton's method finds no equilibrium from there; start it elsewhere")
@@ -235,8 +252,15 @@ class SmallMotions:
         return low, high, period, action if turn is None else action + gauge_part(self, turn)
 
     def _by_velocities(self: Any) -> Any:
-        """Give the Lagrangian, which small motions are those of."""
-        return self.lagrangian() if self._source.kind == "hamiltonian" else self
+        """Give the Lagrangian, which small motions are those of; None where it is no expression."""
+        if self._source.kind == "lagrangian":
+            return self
+        try:
+            return self.lagrangian()
+        except InvalidInput as error:
+            if "quadratic" not in error.message:
+                raise
+            return None
 
     def _conserves(self: Any) -> None:
         if not self._structure["conserves_energy"]:

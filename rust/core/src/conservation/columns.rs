@@ -6,7 +6,7 @@
 use super::{PreciseBodies, angular_momentum, center_of_mass, kinetic_energy, momentum};
 use crate::error::Result;
 use crate::forces::ForceTerm;
-use crate::forces::term::potential_and_virial;
+use crate::forces::together::potential_and_virial;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::words::unknown;

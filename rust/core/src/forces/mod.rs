@@ -33,6 +33,7 @@ mod sources;
 pub mod spheres;
 pub mod spring;
 pub mod term;
+pub mod together;
 pub mod uniform_electric_field;
 pub mod uniform_field;
 pub mod uniform_magnetic_field;

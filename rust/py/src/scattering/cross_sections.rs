@@ -8,7 +8,7 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::parallel::thread_count;
-use visviva_core::scattering::cross_sections::{OF_ANGLES_IN_MEAN, Structure, collision_integral, transport};
+use visviva_core::scattering::cross_sections::{CollisionIntegrals, OF_ANGLES_IN_MEAN, Structure, transport};
 use visviva_core::scattering::deflection::{Deflector, TOLERANCE};
 use visviva_core::scattering::kinematics::Collision;
 
@@ -191,7 +191,8 @@ pub(crate) fn collision_integrals<'py>(
     let (temperature, shape) = copied("temperature", &temperature, [None])?;
     let found = compute(py, 0, None, |ticker| {
         let deflector = Deflector::new(&potential, OF_ANGLES_IN_MEAN)?;
-        let one = |kt: &f64| collision_integral(&deflector, *kt, orders, diameter, threads, ticker);
+        let mut integrals = CollisionIntegrals::new(&deflector, orders, threads);
+        let one = |kt: &f64| integrals.at(*kt, diameter, ticker);
         temperature.iter().map(one).collect::<visviva_core::Result<Vec<f64>>>()
     })?
     .whole(py)?;

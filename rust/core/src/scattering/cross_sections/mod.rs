@@ -13,7 +13,7 @@ mod collision_integral;
 mod transport;
 
 pub use branches::Branch;
-pub use collision_integral::{OF_ANGLES_IN_MEAN, collision_integral};
+pub use collision_integral::{CollisionIntegrals, OF_ANGLES_IN_MEAN};
 pub use transport::transport;
 
 use super::deflection::{Deflection, Deflector, Edge, Status};

@@ -7,8 +7,9 @@
 //! and what energies tell of them is enough.
 //!
 //! Two things are no matter of a step. A multistep method may be unstable where the one-step method that starts it is not:
-//! at the end it is compared with that. And of a drive with less than two steps to a period any two steps may see the same
-//! force: it is asked what that, taken for constant, would have made of the velocity.
+//! at the end it is compared with that. And of a drive that is faster than steps any two may see the same force: [`drives`].
+
+mod drives;
 
 use super::super::distance;
 use super::super::unit::Prepared;
@@ -16,14 +17,12 @@ use super::report::{Ending, Report};
 use super::{Job, Result, fixed};
 use crate::error::Error;
 use crate::forces::Dynamics;
-use crate::forces::driven_force::Drive;
-use crate::forces::term::Energy;
+use crate::forces::together::Energy;
 use crate::numerics::lanes::Lanes;
 use crate::ode::Scheme;
 use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
 use crate::parallel::Ticker;
-use core::f64::consts::{PI, TAU};
 
 /// A velocity that is off by this part of itself after one step tells nothing. Oscillations come to that with seven steps to
 /// a period by Euler's method, and with three by `rk4`; decays with 0.9 and with 2 times of decay to a step.
@@ -120,7 +119,7 @@ pub(super) fn look(
                         (pair.error(unit, (slot, lane), (usual, farthest), job.step()), pair.by)
                     };
                     let by_drive =
-                        (by_drives(job, unit, (slot, lane), end, report.counts.steps), Evidence::Drive);
+                        (drives::error(job, unit, (slot, lane), end, report.counts.steps), Evidence::Drive);
                     let found = seen.iter().map(by_pair).chain([by_drive]);
                     for (error, by) in found.filter(|&(error, _)| error > TOLERATED) {
                         let doubt = Unresolved { body: unit.unit.bodies[slot], error, by };
@@ -179,7 +178,8 @@ fn pairs(
     Ok(pairs)
 }
 
-/// The states to which one step leads, and two of half its length.
+/// The states to which one step leads, and two of half its length. Of a method of first order two steps, and four: it moves
+/// bodies at rest from where they are, which forces notice in the next one.
 fn halved(
     job: &Job<'_>,
     before: &State<Lanes>,
@@ -190,9 +190,12 @@ fn halved(
     let [mut whole, mut halves] = [before.clone(), before.clone()];
     let mut step = stepper(job.plan.method, job.step(), dynamics, before)?;
     let mut half = stepper(job.plan.method, 0.5 * job.step(), dynamics, before)?;
-    let _one = step.step(node, 1, &mut whole, dynamics, ticker)?;
+    let steps = if job.plan.method.order == 1 { 2 } else { 1 };
+    for part in 0..steps {
+        let _one = step.step(node + part, 1, &mut whole, dynamics, ticker)?;
+    }
     step.settle(&mut whole);
-    for part in 0..2 {
+    for part in 0..2 * steps {
         let _one = half.step(2 * node + part, 1, &mut halves, dynamics, ticker)?;
     }
     half.settle(&mut halves);
@@ -243,58 +246,11 @@ fn usual_speed(
 ) -> Usual {
     let span = steps as f64 * job.step().abs();
     let mean = distance(unit.place(slot, end, lane), unit.position[slot]) / span;
-    let driven = |drive: Drive| {
-        let quarter = job.plan.units.take(1.0 / drive.frequency.abs(), [0, 0, 1]);
-        pushed(job, unit, slot, drive.amplitude) * quarter.min(span)
-    };
-    let driven = if only_drives(job, unit) { drives(job, unit).map(driven).sum() } else { 0.0 };
-    let on_the_way = mean.max(driven);
+    let on_the_way = mean.max(drives::speed(job, unit, slot, span));
     Usual {
         at_start: on_the_way.max(speed(unit, unit.pick(slot, end.v(), lane))),
         at_end: if job.plan.energy == Energy::Driven { on_the_way } else { 0.0 },
     }
-}
-
-/// What drives with less than two steps to a period make of a velocity at most, as a part of it, where nothing else acts: of
-/// what steps see of one, which is a slower one.
-fn by_drives(
-    job: &Job<'_>,
-    unit: &Prepared,
-    (slot, lane): (usize, usize),
-    end: &State<Lanes>,
-    steps: u64,
-) -> f64 {
-    if !only_drives(job, unit) {
-        return 0.0;
-    }
-    let dt = job.plan.dt.map_or(0.0, f64::abs);
-    let span = steps as f64 * dt;
-    let gained = |drive: Drive| {
-        let turns = drive.frequency.abs() * dt / TAU;
-        let seen = TAU * (turns - turns.round()).abs() / dt;
-        let time = job.plan.units.take(span.min(1.0 / seen), [0, 0, 1]);
-        pushed(job, unit, slot, drive.amplitude) * time
-    };
-    let unseen = drives(job, unit).filter(|drive| drive.frequency.abs() * dt > PI);
-    let gained: f64 = unseen.map(gained).sum();
-    if gained == 0.0 {
-        return 0.0;
-    }
-    gained / gained.max(speed(unit, unit.pick(slot, end.v(), lane)))
-}
-
-fn only_drives(job: &Job<'_>, unit: &Prepared) -> bool {
-    job.plan.forces_of(unit.unit.copy).iter().all(|force| force.as_driven().is_some())
-}
-
-fn drives<'a>(job: &Job<'a>, unit: &Prepared) -> impl Iterator<Item = Drive> + 'a {
-    job.scene.forces_of(unit.unit.copy).iter().filter_map(|force| force.as_driven())
-}
-
-/// The acceleration of a body by a force.
-fn pushed(job: &Job<'_>, unit: &Prepared, slot: usize, force: [f64; 3]) -> f64 {
-    let mass = job.scene.masses(unit.unit.copy)[unit.unit.bodies[slot]];
-    job.plan.units.take(size(force) / mass, [1, 0, -2])
 }
 
 /// How fast a body is: among others, beside them; alone, in the scene, and not beside the origin that goes along with it.

@@ -12,7 +12,7 @@ use super::{Outcome, Part, Reached};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::term::{Energy, potential_and_virial};
+use crate::forces::together::{Energy, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::units::Units;

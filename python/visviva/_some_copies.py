@@ -1,0 +1,35 @@
+"""What is asked of some of the copies of an ensemble."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva import _core
+
+__all__ = ["of_copies"]
+
+_OF_COPIES = ("mass", "position", "velocity")
+_OF_RIGID_BODIES = ("moments", "axes", "center", "orientation", "angular_velocity")
+"""What is each copy's own."""
+
+
+def of_copies(asked: _core._Request, copies: slice | NDArray[np.intp]) -> _core._Request:
+    """What is asked of some copies, without where an earlier run left them."""
+    request: Any = dict(asked)
+    for name in _OF_COPIES:
+        request[name] = request[name][copies]
+    if asked["radius"] is not None:
+        request["radius"] = asked["radius"][copies]
+    if asked["rigid"] is not None:
+        own: Any = asked["rigid"]
+        request["rigid"] = own | {name: own[name][copies] for name in _OF_RIGID_BODIES}
+    if asked["own_forces"] is not None:
+        sets, which = asked["own_forces"]
+        request["own_forces"] = (sets, np.asarray(which)[copies].tolist())
+    request["continuation"] = None
+    return cast("_core._Request", request)

@@ -1,0 +1,274 @@
+"""Small motions on constraints: places where reactions balance the forces, and what is free to move there.
+
+The one idea: near a place a system on constraints is one with fewer coordinates, those along its tangent directions.
+Its K is that of the forces, less what each reaction λ does where the direction of its constraint turns.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+from visviva.generalized._calculus import Calculus
+from visviva.generalized._higher_orders import Energy
+from visviva.generalized._matrices import LAST_DIGITS, Sizes, matrices, matrices_along, rounding
+from visviva.generalized._multiple_zeros import units
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._matrices import Matrices
+
+__all__ = ["BALANCED", "Balance", "Constrained"]
+
+#: Forces below this part of what they are made of are round-off, or that of the place.
+BALANCED = 1e-8
+#: Residuals of constraints above this part of what they are made of are no round-off.
+_CONSISTENT = 1e-10
+#: Newton's steps to a constraint, and to a balance of forces on it.
+_TO_CONSTRAINTS = 40
+_TO_BALANCE = 60
+#: The least part that Newton's steps leave of the way to a zero that is not simple, and how often it is looked for.
+_OF_A_DOUBLE_ZERO = 0.4
+_SOMETIMES = 4
+#: Numbers below this part of those that are looked at are what rounding leaves of 0.
+_ROUNDED = 1e-14
+#: A step that is below this part of the place is round-off.
+_FOUND = 1e-13
+#: Singular values below this part of the largest are zero: of derivatives …
+_SINGULAR = 1e-10
+#: Directions of constraints are: of those that depend on each other a place is found to half of its digits.
+_DEPENDENT = 1e-6
+#: An equation that is this part of others has nothing but rounding.
+_NOTHING = 1e-12
+
+
+class _Told(NamedTuple):
+    """Of constraints at places: residuals (S, h) and (S, k), directions A (S, m, n), and ∂A/∂q (S, m, n, n)."""
+
+    residuals: NDArray[np.float64]
+    rates: NDArray[np.float64]
+    directions: NDArray[np.float64]
+    turning: NDArray[np.float64]
+
+
+class Balance(NamedTuple):
+    """A place at rest: reactions λ (m), M, C and K (n, n) with F + Aᵀλ for F, and free directions (n, d)."""
+
+    reactions: NDArray[np.float64]
+    matrices: Matrices
+    rounding: NDArray[np.float64]
+    tangent: NDArray[np.float64]
+
+
+class Constrained:
+    """A Lagrangian with constraints, at rest."""
+
+    def __init__(self, system: Lagrangian) -> None:
+        from visviva.generalized._lagrangian import Lagrangian
+
+        source, n = system._source, len(system.coordinates)
+        self.free: Lagrangian = object.__new__(Lagrangian)
+        without = source.description | {"holonomic": [], "nonholonomic": []}
+        state = (system.position, system._second, system.t0)
+        self.free._prepare(
+            type(source)(source.kind, source.names, source.symbols, source.parameters, without),
+            list(system.parameters.values()),
+            state,
+        )
+        self.sizes = Sizes(self.free)
+        self._system, self._n = system, n
+        self._calculus = c = Calculus(self.free)
+        holonomic = c.with_derivatives(c.adopted(source.description["nodes"], source.description["holonomic"]))
+        others = c.with_derivatives(c.adopted(source.description["nodes"], source.description["nonholonomic"]))
+        if any(not c.is_zero(row[-1]) for row in (*holonomic, *others)):
+            raise InvalidInput("constraints", "small motions are those about a place at rest, and a constraint moves")
+        self.holonomic, self.all = len(holonomic), len(holonomic) + len(others)
+        directions = [each for row in holonomic for each in row[1 : 1 + n]]
+        directions += [each for row in others for each in row[1 + n : 1 + 2 * n]]
+        turning = [each for row in c.with_derivatives(directions) for each in row[1 : 1 + n]]
+        self._expressions = [*(row[0] for row in (*holonomic, *others)), *directions, *turning]
+
+    def told(self, places: NDArray[np.float64]) -> _Told:
+        """Give what constraints are at places (S, n)."""
+        states = np.concatenate([places, np.zeros_like(places)], axis=1)
+        times = np.full(len(places), self.free.t0)
+        with np.errstate(all="ignore"):
+            found = self._calculus.values(self._expressions, times, states, self.free._values)
+        h, m, n = self.holonomic, self.all, self._n
+        residuals, rates, directions, turning = np.split(found, [h, m, m + m * n], axis=1)
+        return _Told(residuals, rates, directions.reshape(-1, m, n), turning.reshape(-1, m, n, n))
+
+    def reached(self, starts: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Give places (R, n) in balance that Newton's method comes to, and how far (n) starts reach on constraints."""
+        on = self._put_on(starts)
+        on = on[np.isfinite(on).all(axis=1)]
+        far = np.abs(on).max(axis=0, initial=0.0)
+        n, m = self._n, self.all
+        places, reactions, before = on, np.zeros((len(on), m)), np.full(len(on), np.nan)
+        done: list[NDArray[np.float64]] = []
+        for step in range(_TO_BALANCE):
+            if not len(places):
+                break
+            forces, stiffness = matrices_along(self.free, places)
+            told = self.told(places)
+            if step == 0:
+                reactions = -_solved(told.directions.transpose(0, 2, 1), forces, rows_alike=False)
+            bent = -stiffness + np.einsum("sk,skij->sij", reactions, told.turning)
+            top = np.concatenate([bent, told.directions.transpose(0, 2, 1)], axis=2)
+            bottom = np.concatenate(
+                [told.directions[:, : self.holonomic], np.zeros((len(places), self.holonomic, m))], axis=2
+            )
+            balance = forces + np.einsum("sk,ski->si", reactions, told.directions)
+            off = np.concatenate([balance, told.residuals], axis=1)
+            moved = -_solved(np.concatenate([top, bottom], axis=1), off)
+            size = np.abs(places).max(axis=1, initial=0.0, keepdims=True)
+            small = (np.abs(moved[:, :n]) <= _FOUND * size).all(axis=1)
+            long = np.linalg.norm(moved[:, :n], axis=1)
+            with np.errstate(all="ignore"):
+                shorter = long / before
+            # To a zero of higher order each step takes the same part of the way.
+            linear = (shorter > _OF_A_DOUBLE_ZERO) & (shorter < 1.0) & (step % _SOMETIMES == 0)
+            factor = np.where(linear, 1.0 / (1.0 - np.where(linear, shorter, 0.0)), 1.0)[:, None]
+            places, reactions = places + factor * moved[:, :n], reactions + factor * moved[:, n:]
+            going = ~small & np.isfinite(places).all(axis=1) & np.isfinite(reactions).all(axis=1)
+            done += list(places[small & np.isfinite(places).all(axis=1)])
+            places, reactions, before = places[going], reactions[going], np.where(linear, np.nan, long)[going]
+        # What does not come to rest may be a place that forces tell to some of its digits only.
+        done += list(places)
+        scale = np.fmax(np.abs(starts).max(axis=0, initial=0.0), far)
+        done = [np.where(np.abs(place) < _ROUNDED * scale, 0.0, place) for place in done]
+        balanced = [place for place in done if self.off_balance(place) is None]
+        return np.array(balanced).reshape(-1, n), far
+
+    def _put_on(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give the nearest places on the holonomic constraints, or nearly so."""
+        for _ in range(_TO_CONSTRAINTS if self.holonomic else 0):
+            told = self.told(places)
+            places = places - _solved(told.directions[:, : self.holonomic], told.residuals, columns_alike=False)
+        return places
+
+    def reactions(self, place: NDArray[np.float64], forces: NDArray[np.float64], told: _Told) -> NDArray[np.float64]:
+        """Give those (m) that come nearest to the balance of forces."""
+        unit = units(self.free, place)
+        across, against = (told.directions[0] * unit).T, forces * unit
+        found: NDArray[np.float64] = -_solved(across[None], against[None], rows_alike=False)[0]
+        return found
+
+    def off_balance(self, place: NDArray[np.float64]) -> str | None:
+        """Say what is not at rest at a place, if anything is."""
+        forces, stiffness = (part[0] for part in matrices_along(self.free, place[None]))
+        told = self.told(place[None])
+        if not all(np.isfinite(part).all() for part in (forces, stiffness, *told)):
+            return "forces or constraints have no value there"
+        # Places have one size, in units of masses: what is 0 by symmetry is so to the rounding of others.
+        unit = units(self.free, place)
+        size = unit * np.abs(place / unit).max(initial=0.0)
+        for index, residual in enumerate(np.concatenate([told.residuals[0], told.rates[0]])):
+            if abs(residual) > _CONSISTENT * (np.abs(told.directions[0, index]) @ size):
+                return f"constraint {index} is {residual:.3g} and not 0"
+        reactions = self.reactions(place, forces, told)
+        held = np.abs(reactions) @ np.abs(told.directions[0])
+        scale = (np.abs(stiffness) + np.einsum("k,kij->ij", np.abs(reactions), np.abs(told.turning[0]))) @ size + held
+        left = np.abs(forces + reactions @ told.directions[0])
+        if (left <= BALANCED * scale).all() or (left <= BALANCED * (scale + self.sizes.forces(place[None])[0])).all():
+            return None
+        worst = int(np.argmax(left))
+        return f"a force of {left[worst]:.3g}, which no reaction balances, acts on {self.free.coordinates[worst]!r}"
+
+    def balance(self, place: NDArray[np.float64]) -> Balance:
+        """Give reactions, matrices and free directions at a place at rest.
+
+        Raises
+        ------
+        InvalidInput
+            Where forces are left, or constraints depend on each other.
+        """
+        wrong = self.off_balance(place)
+        if wrong is not None:
+            raise InvalidInput("at", f"expected an equilibrium, but {wrong}; see equilibria()")
+        found, told = matrices(self.free, place), self.told(place[None])
+        directions, turning = told.directions[0], told.turning[0]
+        unit = units(self.free, place)
+        # Rows alike, whatever a constraint is multiplied by.
+        rows = directions * unit
+        rows = rows / np.linalg.norm(rows, axis=1, keepdims=True).clip(min=np.finfo(float).tiny)
+        _, singular, across = np.linalg.svd(rows)
+        if singular.size and singular[-1] <= _DEPENDENT * singular[0]:
+            raise InvalidInput("at", "the constraints depend on each other there: leave one out")
+        reactions = self.reactions(place, found.forces, told)
+        stiffness = found.stiffness - np.einsum("k,kij->ij", reactions, turning)
+        off = rounding(self.free, place, found.stiffness, self.sizes)
+        off = off + 4.0 * LAST_DIGITS * np.einsum("k,kij->ij", np.abs(reactions), np.abs(turning))
+        return Balance(reactions, found._replace(stiffness=stiffness), off, (across[len(rows) :] * unit).T)
+
+    def along(self, place: NDArray[np.float64], tangent: NDArray[np.float64]) -> Energy:
+        """Give the potential of the forces on the holonomic constraints, by distances η along free directions."""
+        across = np.linalg.svd(self.told(place[None]).directions[0, : self.holonomic])[2][: self.holonomic].T
+
+        def at(distances: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+            places = place + distances @ tangent.T
+            for _ in range(_TO_CONSTRAINTS):
+                told = self.told(places)
+                steep = told.directions[:, : self.holonomic] @ across
+                places = places - _solved(steep, told.residuals) @ across.T
+            told = self.told(places)
+            directions = told.directions[:, : self.holonomic]
+            steep = np.linalg.pinv(_finite(directions @ across))
+            bent = tangent - across @ (steep @ (directions @ tangent))
+            forces, stiffness = matrices_along(self.free, places)
+            reactions = -np.einsum("si,ik,skh->sh", forces, across, steep)
+            full = stiffness - np.einsum("sk,skij->sij", reactions, told.turning[:, : self.holonomic])
+            off = np.abs(told.residuals).max(axis=1, initial=0.0) > _CONSISTENT * (
+                np.abs(directions) @ np.abs(places)[:, :, None]
+            ).max(axis=(1, 2), initial=0.0)
+            forces[off] = np.nan
+            return places, bent, forces, full
+
+        def slopes(distances: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+            _, bent, forces, full = at(distances)
+            return -np.einsum("si,sid->sd", forces, bent), np.einsum("sid,sij,sje->sde", bent, full, bent)
+
+        def sizes(distances: NDArray[np.float64]) -> NDArray[np.float64]:
+            places, bent, forces, full = at(distances)
+            made_of = np.abs(forces) + self.sizes.forces(places) + np.einsum("sij,sj->si", np.abs(full), np.abs(places))
+            of_slopes: NDArray[np.float64] = np.einsum("si,sid->sd", made_of, np.abs(bent))
+            return of_slopes
+
+        return Energy(slopes, sizes)
+
+
+def _solved(
+    matrix: NDArray[np.float64], right: NDArray[np.float64], *, rows_alike: bool = True, columns_alike: bool = True
+) -> NDArray[np.float64]:
+    """Give the least solutions (S, j) of many equations (S, i, j), of which columns, and rows, may have own units.
+
+    Weighed by their sizes, more rows than columns must be consistent, and more columns than rows give another solution.
+    """
+    bad = ~(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1))
+    matrix, right = _finite(matrix), _finite(right)
+    rows = np.ones((*right.shape, 1))
+    if rows_alike:
+        rows = np.abs(matrix).max(axis=2, initial=0.0, keepdims=True)
+        # What is next to nothing beside others is the rounding of 0.
+        rows = np.fmax(rows, _NOTHING * rows.max(axis=1, initial=0.0, keepdims=True))
+        rows[rows == 0.0] = 1.0
+    columns = np.ones((len(matrix), 1, matrix.shape[2]))
+    if columns_alike:
+        columns = np.abs(matrix / rows).max(axis=1, initial=0.0, keepdims=True)
+        columns[columns == 0.0] = 1.0
+    solved = np.linalg.pinv(matrix / rows / columns, rcond=_SINGULAR) @ (right[:, :, None] / rows)
+    found: NDArray[np.float64] = solved[:, :, 0] / columns[:, 0]
+    found[bad] = np.nan
+    return found
+
+
+def _finite(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(np.isfinite(matrix), matrix, 0.0)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
