@@ -7,7 +7,8 @@ change no bit of a run; one that is ``terminal`` ends it.
 `coordinate` and `expression` are of runs in generalized coordinates, which take `energy` and `function`, too.
 
 A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
-step and turns, it is followed down, so that two zeros in one step are found.
+step and turns, it is followed down, so that two zeros in one step are found. What a collision makes jump from one sign
+to the other is an event at the time of the collision, with the state after it: energies, apsides and functions.
 
 The state at a terminal event is on the far side of the zero, by a rounding. A run that goes on from there is away from
 it and does not find it again; one whose velocity was turned round, to bounce, comes back through it at once, and finds

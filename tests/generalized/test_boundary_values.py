@@ -136,3 +136,14 @@ def test_half_an_orbit_however_its_axes_are_turned(angle: float, far: float) -> 
         found = system.boundary_value(np.pi * semi_major_axis**1.5, turned(-far, 0.0))
         # det ∂x/∂v is 16 and more; some roundings of the flow's derivatives.
         assert found.velocity == pytest.approx(turned(0.0, speed), rel=0, abs=1e-13)
+
+
+@pytest.mark.parametrize(("t", "target"), [(np.pi, 1.0), (np.pi, -1.5), (3 * np.pi, 3.0)])
+def test_what_does_not_arrive_is_no_answer(t: float, target: float) -> None:
+    """After half a period all motions meet at −1: a velocity of 6e15 was given, which rounding takes to −0.27."""
+    oscillator = vv.systems.oscillator(k=1.0, m=1.0, position=[1.0])
+    with pytest.raises(vv.ConvergenceError, match="conjugate point"):
+        oscillator.boundary_value(t, [target])
+    found = oscillator.boundary_value(t + 1e-6, [target])
+    # Of a motion as large as 1e6 the last digits are left.
+    assert found.run(t + 1e-6).position[-1, 0] == pytest.approx(target, rel=1e-9, abs=0.0)

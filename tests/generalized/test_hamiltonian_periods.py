@@ -156,5 +156,14 @@ def test_normal_modes_are_those_of_the_lagrangian() -> None:
         of_hamiltonian.normal_modes([0.0, 0.0]).frequencies, coupled.normal_modes([0.0, 0.0]).frequencies, rtol=1e-14
     )
     assert of_hamiltonian.linearize([0.0, 0.0]).stable
-    with pytest.raises(vv.InvalidInput, match="quadratic"):
-        moving(relativistic, 0.0, 0.0).normal_modes()
+    assert moving(relativistic, 0.0, 0.0).normal_modes().stable
+
+
+@pytest.mark.parametrize("start", [1.5, np.pi / 2, 1.5707963, 1.6])
+def test_a_start_at_an_inflection_has_a_period_like_others(start: float) -> None:
+    """Where V'' vanishes there is no time in it: "on a separatrix" was said at π/2."""
+    hamiltonian = vv.Hamiltonian(lambda q, p, t: (1.0 + p[0] ** 2) ** 0.5 - np.cos(q[0]), ["x"], position=[start])
+    period = hamiltonian.period()
+    # It comes back to 1e-12 of itself.
+    np.testing.assert_allclose(hamiltonian.run(period).position[-1], [start], rtol=1e-10)
+    assert 9.3 < period < 9.9

@@ -98,3 +98,21 @@ def test_ctrl_c_keeps_the_last_step() -> None:
     # Millions of steps a second or hundreds on a loaded machine: it has come some way, and its energy with it.
     assert out.final.t0 > 1.0
     assert abs(float(out.final.energy) - float(flow().energy)) < 1e-12
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "rk4"])
+@pytest.mark.parametrize("t0", [1e6, -1e9, 1e12])
+def test_times_far_from_zero_cost_no_digits(method: str, t0: float) -> None:
+    """Rows between the ends were as far off as a time has no digits: 1.5e-7 at 1e9, where all times are exact."""
+    times = np.array([0.0, 1.0, 2.5, 2.5, 5.25, 10.0])
+    pendulum = vv.systems.pendulum(position=[2.0], velocity=[1.0])
+    how = {"method": method} | ({"dt": 0.125} if method == "rk4" else {})
+    passes = [vv.events.coordinate("theta", 0.3, direction=1)]
+    here, there = (each.run(times + each.t0, events=passes, **how) for each in (pendulum, pendulum.at(t0=t0)))
+    np.testing.assert_array_equal(there.position, here.position)
+    np.testing.assert_array_equal(there.t, times + t0)
+    assert len(there.events) == len(here.events) > 0
+    np.testing.assert_allclose(there.events.t - t0, here.events.t, rtol=0.0, atol=np.spacing(abs(t0)))
+    # Of what knows the time there is no such thing.
+    moving = vv.systems.moving_pivot(position=[0.1])
+    assert not np.array_equal(moving.at(t0=1e6).run(1e6 + times).position, moving.run(times).position)

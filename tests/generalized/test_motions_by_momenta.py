@@ -79,3 +79,46 @@ def test_what_has_no_small_motions_is_refused_by_name():
         driven.linearize()
     with pytest.raises(vv.InvalidInput, match="position"):
         relativistic.linearize()
+
+
+@pytest.mark.parametrize("m", [1e-27, 1e-9, 1e9])
+def test_equilibria_in_any_units(m):
+    """An oscillator was unstable where its momenta were in other units than its places."""
+    (found,) = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / (2 * m) + m * q[0] ** 2 / 2, ["x"]).equilibria(
+        near=[[0.1, 0.0]]
+    )
+    assert found.stable
+    np.testing.assert_allclose(found.frequencies, [1.0], rtol=1e-13)
+    c, w = 3e8, 1e7
+    proton = vv.Hamiltonian(lambda q, p, t: c * (p[0] ** 2 + (m * c) ** 2) ** 0.5 + m * w**2 * q[0] ** 2 / 2, ["x"])
+    for near in ([[1e-3, 0.0]], None):
+        (found,) = proton.equilibria(near=near)
+        assert found.stable
+        np.testing.assert_allclose(found.frequencies, [w], rtol=1e-12)
+    turning = vv.Hamiltonian(
+        lambda q, p, t: (
+            (p[0] ** 2 + p[1] ** 2) / (2 * m) + 0.3 * (q[0] * p[1] - q[1] * p[0]) + m * (q[0] ** 2 + 2 * q[1] ** 2) / 2
+        ),
+        ["x", "y"],
+    )
+    (found,) = turning.equilibria(near=[[0.1, 0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(found.position, 0.0, atol=1e-15)
+    np.testing.assert_allclose(found.frequencies, turning.linearize([0.0, 0.0]).frequencies, rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e6, 1e12])
+def test_frequencies_do_not_hang_on_units(unit):
+    """Rounding of the largest entries was that of all: 1e-5 of a frequency, and growth that is none."""
+    turning = vv.Lagrangian(
+        lambda q, v, t: (
+            (v[0] ** 2 + (unit * v[1]) ** 2) / 2
+            - (q[0] ** 2 + 2 * (unit * q[1]) ** 2) / 2
+            + 0.35 * unit * (q[0] * v[1] - q[1] * v[0])
+            - 0.2 * unit * q[0] * q[1]
+        ),
+        ["x", "y"],
+    )
+    small = turning.linearize([0.0, 0.0])
+    np.testing.assert_allclose(small.frequencies, [0.838662427252541, 1.6693248135443484], rtol=1e-13)
+    assert np.abs(small.eigenvalues.real).max() < 1e-14
+    assert small.stable

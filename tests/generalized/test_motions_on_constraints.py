@@ -198,8 +198,154 @@ def test_what_has_no_small_motions_is_refused_by_name():
         pendulum(2.0).linearize(at=[0.0, -1.9])
     with pytest.raises(vv.InvalidInput, match="which no reaction balances, acts on 'x'"):
         pendulum(2.0).linearize(at=[1.2, -1.6])
+    # ẏ = x: λ³ + λ + ½ = 0 is unstable, whatever moves along x alone.
+    steered = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + v[1] ** 2 - q[0] ** 2 - q[0] * q[1] - q[1] ** 2) / 2,
+        ["x", "y"],
+        nonholonomic=[lambda q, v, t: v[1] - q[0]],
+        position=[0.0, 0.0],
+    )
+    for ask in (steered.equilibria, steered.linearize, steered.normal_modes):
+        with pytest.raises(vv.InvalidInput, match=r"a further term b\(q\)"):
+            ask()
     sleigh = vv.Lagrangian(
         lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2, ["x", "y"], nonholonomic=[lambda q, v, t: v[0] - q[0] * v[1]]
     )
     with pytest.raises(vv.InvalidInput, match="position"):
         sleigh.equilibria()
+
+
+SURFACES = {
+    "x² + y⁴": (lambda x, y: x**2 + y**4, True),
+    "x² − y⁴": (lambda x, y: x**2 - y**4, False),
+    "x² + y³": (lambda x, y: x**2 + y**3, False),
+    "(y − x²)(y − 2x²)": (lambda x, y: (y - x**2) * (y - 2 * x**2), False),
+    "(x + y/2)² + y⁴": (lambda x, y: (x + y / 2) ** 2 + y**4, True),
+    "(x + y/2)² − y⁴": (lambda x, y: x**2 + x * y + y**2 / 4 - y**4, False),
+    "(x + y/2)² + y³": (lambda x, y: x**2 + x * y + y**2 / 4 + y**3, False),
+}
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_level_directions_are_told_however_they_lie(surface):
+    """On a surface, on one that is turned, and in free coordinates with the origin elsewhere."""
+    height, stable = SURFACES[surface]
+
+    def turned(q):
+        x, y, z = q
+        return (x + 2 * y + 2 * z) / 3, (2 * x + y - 2 * z) / 3, (2 * x - 2 * y + z) / 3
+
+    on_surface = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - G * q[2],
+        ["x", "y", "z"],
+        constraints=[lambda q, v, t: q[2] - height(q[0], q[1])],
+    )
+    on_turned = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - G * turned(q)[2],
+        ["x", "y", "z"],
+        constraints=[lambda q, v, t: 1e-7 * (turned(q)[2] - height(*turned(q)[:2]))],
+    )
+    free = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - height(q[0] - 1 / 3, q[1] - 2 / 7), ["x", "y"]
+    )
+    momenta = vv.Hamiltonian(
+        lambda q, p, t: sum(each**2 for each in p) / 2 + height(q[0] - 1 / 3, q[1] - 2 / 7), ["x", "y"]
+    )
+    near = np.array([[0.3, 0.2, 0.0], [0.01, -0.02, 0.0], [0.0, 0.0, 0.0]])
+    # Where slopes vanish as a cube a place is told to a hundredth of a thousandth.
+    for system, at, starts in (
+        (on_surface, np.zeros(3), near),
+        (on_turned, np.zeros(3), near),
+        (free, np.array([1 / 3, 2 / 7]), near[:, :2] + [1 / 3, 2 / 7]),
+        (momenta, np.array([1 / 3, 2 / 7]), np.pad(near[:, :2] + [1 / 3, 2 / 7], ((0, 0), (0, 2)))),
+    ):
+        told = [each for each in system.equilibria(near=starts) if np.abs(each.position - at).max() < 1e-4]
+        assert told
+        assert {each.stable for each in told} == {stable}
+
+
+@pytest.mark.parametrize("mass", [1e-27, 1e-12, 1e12])
+@pytest.mark.parametrize("length", [1e-6, 1e3])
+@pytest.mark.parametrize("weight", [1e-9, 1e9])
+def test_masses_and_constraints_in_any_units(mass, length, weight):
+    rod = vv.Lagrangian(
+        lambda q, v, t: mass * (v[0] ** 2 + v[1] ** 2) / 2 - mass * G * q[1],
+        ["x", "y"],
+        constraints=[lambda q, v, t: weight * (q[0] ** 2 + q[1] ** 2 - length**2)],
+    )
+    found = rod.equilibria(near=[[0.1 * length, -0.9 * length], [0.1 * length, 0.9 * length]])
+    assert [each.stable for each in found] == [True, False]
+    np.testing.assert_allclose(found[0].frequencies, [np.sqrt(G / length)], rtol=1e-13)
+
+
+def test_what_velocities_hold_may_push():
+    """A wheel stays where it is put, where nothing pushes it from there; else it is gone as t²."""
+    pushed = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - q[0] * q[2],
+        ["x", "y", "z"],
+        nonholonomic=[lambda q, v, t: v[2] - q[1] * v[0]],
+        position=[0.0, 0.0, 0.0],
+    )
+    assert not pushed.equilibria()[0].stable
+    blade = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - G * q[1],
+        ["x", "y", "theta"],
+        nonholonomic=[lambda q, v, t: np.sin(q[2]) * v[0] - np.cos(q[2]) * v[1]],
+        position=[0.0, 0.0, 0.0],
+    )
+    # Turned by 1e-6 it slides down as g 1e-6 t²/2.
+    assert not blade.linearize().stable
+
+
+def test_far_away_coordinates_weigh_no_force_of_others():
+    """A trolley anywhere along its rail, with a pendulum that does not hang."""
+    at = 1e9
+    trolley = vv.Lagrangian(
+        lambda q, v, t: (
+            (2 * v[0] ** 2 + v[1] ** 2) / 2 + (v[2] ** 2 + 2 * v[0] * v[2] * np.cos(q[2])) / 2 + G * np.cos(q[2])
+        ),
+        ["x", "y", "phi"],
+        constraints=[lambda q, v, t: q[1]],
+        position=[at, 0.0, 0.0],
+    )
+    assert trolley.linearize().stable
+    with pytest.raises(vv.InvalidInput, match="acts on 'phi'"):
+        trolley.linearize(at=[at, 0.0, 0.01])
+    # Places along the rail are alike.
+    assert [each.position[0] for each in trolley.equilibria()] == [0.0] * 3
+
+
+def test_reactions_that_are_rounding_balance():
+    rolling = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + 0.3 * v[1] ** 2) / 2 + 0.02 * G * np.cos(q[1]),
+        ["x", "phi"],
+        nonholonomic=[lambda q, v, t: v[0] - 0.5 * v[1]],
+        position=[0.0, 0.0],
+    )
+    above = rolling.linearize(at=[1.0, np.pi])
+    assert not above.stable
+    # (M + I/R²) x¨ = m g e x / R²
+    np.testing.assert_allclose(above.squares, [-0.02 * G / 0.25 / (1.0 + 0.3 / 0.25)], rtol=1e-13)
+
+
+def test_nothing_rests_where_forces_have_become_zero():
+    assert bead(lambda x: np.exp(-x)).equilibria(near=[[20.0, 0.0], [3.0, 0.1], [100.0, 0.0]]) == []
+
+
+def test_what_nothing_is_free_to_move_in_is_named():
+    held = vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 - q[0], ["x"], constraints=[lambda q, v, t: q[0]], position=[0.0]
+    )
+    for ask in (held.equilibria, held.linearize, held.normal_modes):
+        with pytest.raises(vv.InvalidInput, match="leave none of 1 coordinates free"):
+            ask()
+
+
+def test_a_constraint_without_a_direction_is_named():
+    squared = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 - G * q[1],
+        ["x", "y"],
+        constraints=[lambda q, v, t: (q[0] ** 2 + q[1] ** 2 - 1.0) ** 2],
+    )
+    with pytest.raises(vv.InvalidInput, match="constraint 0 has no direction there"):
+        squared.equilibria()

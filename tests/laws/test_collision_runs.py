@@ -271,3 +271,46 @@ def test_events_miss_no_short_approach_either() -> None:
         for options in ({"method": "dop853"}, {"method": "leapfrog", "dt": 1.0}):
             out = scene.run(100.0, events=[vv.events.distance(0, 1, below=0.2)], **options)
             assert out.events.t == pytest.approx([(6.0 - np.sqrt(0.03)) / (2.0 * speed)], rel=1e-14, abs=0)
+
+
+TWO_BALLS = vv.Scene(vv.Particles([1.0, 2.0], [[0, 0, 0], [3.0, 0, 0]], [[1.0, 0, 0], [0, 0, 0]], radius=0.5))
+
+
+def test_what_a_collision_makes_jump_is_an_event() -> None:
+    """The energy falls from 1/2 to 1/4 in the bounce at t = 2, the speed of the first from 1 to 0, and r·v turns."""
+    events = [
+        vv.events.energy(0.4),
+        vv.events.energy(0.4, direction=1),
+        lambda t, x, v: v[0, 0] - 0.5,
+        vv.events.apsis(0, 1),
+        vv.events.energy(0.1),
+    ]
+    out = TWO_BALLS.run(5.0, collisions="bounce", restitution=0.5, events=events)
+    assert [int(which) for which in out.events.which] == [0, 2, 3]
+    np.testing.assert_array_equal(out.events.t, [out.collisions.t[0]] * 3)
+    # The state is that after it.
+    np.testing.assert_allclose(out.events.velocity[:, 0, 0], 0.0, atol=1e-15)
+    back = out.final.run(t=0.0, collisions="bounce", restitution=1.0, events=[vv.events.apsis(0, 1)])
+    assert len(back.events) == len(back.collisions)
+    many = TWO_BALLS.ensemble(velocity=[[[1.0, 0, 0], [0, 0, 0]], [[0.5, 0, 0], [0, 0, 0]]])
+    stopped = many.run(5.0, collisions="bounce", restitution=0.5, events=[vv.events.energy(0.4, terminal=True)])
+    assert [vv.Status(int(each)) for each in stopped.status] == [vv.Status.STOPPED, vv.Status.OK]
+
+
+@pytest.mark.parametrize("method", ["auto", "leapfrog", "rk4", "taylor"])
+def test_what_rests_on_a_plane_does_not_pass_it(method: vv.typing.MethodName) -> None:
+    """Beside a ball that comes, in a frame that moves with both, it is there to an ulp: the run ended with that."""
+    steps = {} if method in ("auto", "taylor") else {"dt": 0.1}
+    plane = vv.events.plane([3.0, 0, 0], [1.0, 0, 0], body=1, terminal=True)
+    out = TWO_BALLS.run(1.9, collisions="bounce", method=method, events=[plane], **steps)
+    assert out.status is vv.Status.OK
+    touching = vv.Scene(
+        vv.Particles(
+            [1.0, 2.0, 1.0],
+            [[0, 0, 0], [2.0, 0, 0], [-5.0, 0.5, 0]],
+            [[0.3, 0.1, 0], [0.3, 0.1, 0], [1.1, 0, 0]],
+            radius=0.5,
+        )
+    )
+    apart = vv.events.distance(0, 1, below=2.0, direction=0)
+    assert len(touching.run(3.0, collisions="bounce", events=[apart]).events) == 0

@@ -133,3 +133,16 @@ def test_what_is_captured_too_seldom_to_count_refuses_no_mean() -> None:
         found = float(vv.scattering.collision_integral(potential, temperature=temperature, diameter=1.0))
         # On from 0.46489412 at T = 8, where it falls as the power −0.2987 of T.
         assert found == pytest.approx(0.46489412 * (temperature / 8.0) ** -0.2987, rel=5e-3, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [vv.potentials.LennardJones(1.3, 0.8), vv.potentials.PowerLaw(1.0, 6.0), vv.potentials.ScreenedCoulomb(2.0, 0.5)],
+    ids=["well", "power", "screened"],
+)
+def test_temperatures_share_cross_sections_and_change_nothing(potential: vv.potentials.Potential) -> None:
+    """Each has the bits that it has alone, in any order, by any threads."""
+    ask, how = vv.scattering.collision_integral, {"orders": (2, 2), "diameter": 0.7}
+    alone = [ask(potential, temperature=t, threads=n, **how) for t, n in ((3.0, 1), (0.9, 3))]
+    np.testing.assert_array_equal(ask(potential, temperature=[3.0, 0.9, 3.0], **how), [*alone, alone[0]])
+    np.testing.assert_array_equal(ask(potential, temperature=[0.9, 3.0], **how), alone[::-1])

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.generalized._constrained_motions import Balance
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Matrices
 
@@ -339,9 +340,11 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
     return of_matrices(place, (found, off_by, None), small, system.coordinates)
 
 
-def linearization_of(constrained: Constrained, place: NDArray[np.float64]) -> Linearization:
+def linearization_of(
+    constrained: Constrained, place: NDArray[np.float64], balance: Balance | None = None
+) -> Linearization:
     """Small motions of a Lagrangian on its constraints about a place."""
-    balance = constrained.balance(place)
+    balance = constrained.balance(place) if balance is None else balance
     small = eigenmodes(balance.matrices, balance.tangent)
     known = (balance.matrices, balance.rounding, balance.tangent)
     return of_matrices(place, known, small, constrained.free.coordinates)

@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva._arrays import float_array
 from visviva.errors import ConvergenceError, InvalidInput
-from visviva.generalized._changes import flow_jacobian, refuse_kinks
+from visviva.generalized._neighbors import flow_jacobian, refuse_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +38,8 @@ _FIRST, _LONGEST, _SHORTEST = 0.05, 0.5, 1e-5
 _MOST_CORRECTIONS, _ON_THE_CURVE = 6, 1e-8
 #: The shortest time of a straight line is the whole over 2 to this power.
 _SHORTEST_TIME = 7
+#: What a run may miss the place by.
+_ARRIVED = 1e-6
 #: Where velocities change a place by less than this part of what they would in free motion, places are conjugate.
 _CONJUGATE = 1e-9
 
@@ -53,6 +55,9 @@ class _Reached(NamedTuple):
 def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, rtol: float) -> GeneralizedSystem:
     """Give the system with the velocities (or momenta) that lead to a place at a time."""
     refuse_kinks(system)
+    free: Any = system
+    if system._source.kind == "lagrangian" and free._constraints():
+        raise InvalidInput("system", "motions between two places are found of systems without constraints")
     goal = float_array("position", position, (len(system.coordinates),))
     if t == system.t0:
         raise InvalidInput("t", f"expected another time than the start, {system.t0:g}")
@@ -62,7 +67,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
         found = shooting.by_moving_the_goal()
     if found is None:
         found = shooting.from_a_straight_line()
-    if found is None:
+    if found is None or not shooting.arrives(found):
         raise ConvergenceError(shooting.told())
     return system._at(None, found)
 
@@ -139,6 +144,14 @@ class _Shooting:
                 return second if size <= _NEAREST else None
             second, reached, size = trial, other, self._size(other.place - self._goal)
         return None
+
+    def arrives(self, second: NDArray[np.float64]) -> bool:
+        """Whether a run with the velocity found arrives, too: one of 1e16 is somewhere else by its rounding."""
+        out = self._system._at(None, second).run(self._t, rtol=self._rtol)
+        miss = self._size(out.position[-1] - self._goal)
+        if miss > _ARRIVED:
+            self._nearest = miss
+        return miss <= _ARRIVED
 
     def _note(self, size: float, reached: _Reached, t: float) -> None:
         if t == self._t and size < self._nearest:

@@ -1,31 +1,20 @@
-"""Other descriptions of a system: Hamiltonians of Lagrangians and back, Routh's function, the flow's derivatives."""
+"""Other descriptions of a system: Hamiltonians of Lagrangians and back, Routh's function."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva.errors import ConvergenceError, Interrupted, InvalidInput
+from visviva.errors import InvalidInput
 from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import free_name, sympy, time
-from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from visviva.generalized._system import GeneralizedSystem
-    from visviva.integrators import Method
-    from visviva.typing import GeneralizedMethodName
 
-__all__ = ["flow_jacobian", "legendre", "lyapunov_exponents", "refuse_kinks", "routhian"]
-
-#: The most steps of a run.
-MOST_STEPS = 100_000_000
-#: Where the least growth of neighbors is below this part of the most, it has lost as many of its digits.
-_DROWNED = 1e-5
+__all__ = ["legendre", "routhian"]
 
 
 def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
@@ -119,83 +108,3 @@ def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float | None] | No
     position = None if system.position is None else system.position[kept]
     other._prepare(made, [*system.parameters.values(), *values], (position, system._second[kept], system.t0))
     return other
-
-
-def flow_jacobian(
-    system: GeneralizedSystem,
-    t: float,
-    *,
-    rtol: float = 1e-12,
-    method: GeneralizedMethodName | Method = "gauss16",
-    most_steps: int = MOST_STEPS,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the state at ``t``, and its derivatives with respect to the state at the start."""
-    n = 2 * len(system.coordinates)
-    refuse_kinks(system)
-    system._check_start()
-    asked, _ = system._asked(t, method, rtol, None, None)
-    asked["max_steps"] = most_steps
-    start = np.concatenate([system._start(), np.eye(n).ravel()])
-    model = system._model.variational()
-    result = model.run(asked, start[None, :], system._values[None, :], 1, None)
-    whole(result, "flow")
-    last = result["y"][-1]
-    return last[:n], last[n:].reshape(n, n)
-
-
-def refuse_kinks(system: GeneralizedSystem) -> None:
-    if system._structure["kinks"]:
-        raise InvalidInput(
-            "system",
-            "expected a function without absolute values: where one turns the derivatives of a motion jump, which "
-            "variational equations do not tell; compare runs from neighboring starts",
-        )
-
-
-def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
-    """Give all exponents, by the variational equations and orthonormal frames."""
-    n = 2 * len(system.coordinates)
-    refuse_kinks(system)
-    system._check_start()
-    model = system._model.variational()
-    parts = max(1, round(abs(t - system.t0) / interval))
-    times = np.linspace(system.t0, t, parts + 1)
-    state, frame, sums = system._start(), np.eye(n), np.zeros(n)
-    # Parts that are still to come, the next one last.
-    pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
-    shortest = 1e-6 * abs(t - system.t0) / parts
-    while pending:
-        begin, end = pending.pop()
-        asked = {
-            "method": "gauss16",
-            "span": (begin, end),
-            "rtol": rtol,
-            "atol": None,
-            "dt": None,
-            "max_step": None,
-            "max_steps": MOST_STEPS,
-            "outputs": np.array([end]),
-            "events": [],
-        }
-        both = np.concatenate([state, frame.ravel()])
-        result = model.run(asked, both[None, :], system._values[None, :], 1, None)
-        if result["interrupted"]:
-            raise Interrupted("the exponents were interrupted")
-        failed, stretch = result["failures"][0], np.zeros(n)
-        if failed is None and np.isfinite(result["y"][-1]).all():
-            last = result["y"][-1]
-            turned, sizes = np.linalg.qr(last[n:].reshape(n, n))
-            stretch = np.abs(np.diag(sizes))
-        # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal again
-        # before that.
-        if stretch.min() <= _DROWNED * stretch.max():
-            if abs(end - begin) <= shortest:
-                raise ConvergenceError(
-                    failed or "what neighbors do differs too much in the shortest time to be told apart", begin
-                )
-            middle = begin + 0.5 * (end - begin)
-            pending += [(middle, end), (begin, middle)]
-            continue
-        state, frame = last[:n], turned
-        sums += np.log(stretch)
-    return np.sort(sums / (t - system.t0))[::-1]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from visviva.generalized._nodes import Expression
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["check_on_constraints", "projected", "wants_projection"]
+__all__ = ["check_on_constraints", "constraints_and_rates", "projected", "wants_projection"]
 
 #: Residuals above this part of their sizes, and corrections above this part of a number, are no round-off.
 _CONSISTENT = 1e-10
@@ -68,11 +68,7 @@ def projected(
 def _sizes(system: Lagrangian, state: NDArray[np.float64]) -> tuple[list[float], list[float]]:
     """Give sizes of all holonomic constraints, and of the rates of all."""
     c, n = Calculus(system), len(system.coordinates)
-    description = system._source.description
-    holonomic = c.adopted(description["nodes"], description["holonomic"])
-    others = c.adopted(description["nodes"], description["nonholonomic"])
-    v = c.velocities()
-    rates = [sum((v[i] * row[1 + i] for i in range(n)), row[2 * n + 1]) for row in c.with_derivatives(holonomic)]
+    holonomic, rates = constraints_and_rates(c, system)
     halves = np.abs(state.reshape(2, n))
     scales = np.maximum(halves, _ROUNDED * halves.max(axis=1, keepdims=True)).ravel()
 
@@ -86,4 +82,13 @@ def _sizes(system: Lagrangian, state: NDArray[np.float64]) -> tuple[list[float],
             found.append(float(values[: len(terms)].sum()) + changes)
         return found
 
-    return sizes(holonomic, n), sizes([*rates, *others], 2 * n)
+    return sizes(holonomic, n), sizes(rates, 2 * n)
+
+
+def constraints_and_rates(c: Calculus, system: Lagrangian) -> tuple[list[Expression], list[Expression]]:
+    """Give what vanishes on constraints: the holonomic ones, and the rates of all."""
+    n, description, v = len(system.coordinates), system._source.description, c.velocities()
+    holonomic = c.adopted(description["nodes"], description["holonomic"])
+    others = c.adopted(description["nodes"], description["nonholonomic"])
+    rates = [sum((v[i] * row[1 + i] for i in range(n)), row[2 * n + 1]) for row in c.with_derivatives(holonomic)]
+    return holonomic, [*rates, *others]

@@ -35,6 +35,8 @@ SAME = 1e-8
 #: Starts of a search for equilibria, and of one of many coordinates.
 _MOST_STARTS = 2000
 _MOST_OF_MANY = 256
+#: Places that differ by less than this many times what forces leave open are one.
+_ONE = 4.0
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -171,14 +173,29 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     if everywhere:
         reached = reached[(np.abs(reached) <= np.fmax(np.pi, far) + 1e-6).all(axis=1)]
     n = len(system.coordinates)
+    distinguishing = np.ones(n, dtype=bool)
+    cyclic = [index for index in system._structure["cyclic"] if constrained.without_any[index]]
+    distinguishing[cyclic] = False
+    if everywhere:
+        reached[:, cyclic] = 0.0
     results, refused = [], []
-    for place in _once(reached, starts, np.ones(n, dtype=bool)):
+    apart: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
+    looked_at = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
+    for found in _once(reached, starts, distinguishing):
+        if any((np.abs(found - other) <= left)[distinguishing].all() for other, left in apart):
+            continue
         try:
-            small = linearization_of(constrained, place)
+            place, balance = found, constrained.balance(found, looked_at)
+            # Zeros where they may be.
+            snapped = np.where(np.abs(place) <= _ONE * balance.left_open, 0.0, place)
+            if (snapped != place).any() and constrained.off_balance(snapped) is None:
+                place, balance = snapped, constrained.balance(snapped, looked_at)
+            small = linearization_of(constrained, place, balance)
         except InvalidInput as refusal:
             refused.append(refusal)
             continue
-        leaves, free = False, small._free_matrices()
+        apart.append((place, SAME * np.abs(place).max(initial=0.0) + _ONE * balance.left_open))
+        leaves, free = balance.drifts, small._free_matrices()
         about = level_and_held(*free)
         if about is not None and small.tangent is not None and not rolling:
             energy = constrained.along(place, small.tangent)

@@ -7,7 +7,7 @@ tell of small motions. Where these leave H level to second order, a minimum or a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from visviva.generalized._calculus import Calculus
 from visviva.generalized._equilibria import SAME, Equilibrium, starts_of_a_search
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
-from visviva.generalized._matrices import LAST_DIGITS, nudges
+from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
 from visviva.generalized._multiple_zeros import left_open, told_apart
 from visviva.generalized._probe import terms_of
 
@@ -62,7 +62,8 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
                 "near", f"expected states of {n} coordinates and momenta, got an array of shape {states.shape}"
             )
     looked_at = np.abs(states).max(axis=0)
-    states = _reached(system, states)
+    scales = _scales(system, states)
+    states = _reached(system, states, scales)
     distinguishing = np.ones(2 * n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     if near is None:
@@ -77,11 +78,31 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
         places.append(states[0])
         states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
     energy = _energy(system)
-    places = told_apart(energy, places, size, np.ones_like)
-    return [_equilibrium(system, energy, place, size) for place in sorted(places, key=tuple)]
+    places = told_apart(energy, places, size, lambda _: scales.units)
+    return [_equilibrium(system, energy, place, scales) for place in sorted(places, key=tuple)]
 
 
-def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.float64]:
+class _Scales(NamedTuple):
+    """Of states that are looked at: units (2n) in which rates are alike, sizes (2n) in them, and least rates (2n).
+
+    Momenta are as large as coordinates make them, and rates below the least are round-off.
+    """
+
+    units: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    least: NDArray[np.float64]
+
+
+def _scales(system: Hamiltonian, states: NDArray[np.float64]) -> _Scales:
+    slopes = np.abs(rates_and_slopes(system, states)[1])
+    slopes = np.where(np.isfinite(slopes), slopes, 0.0).max(axis=0)
+    units = balanced_units(slopes[None])[0]
+    size = float((np.abs(states) / units)[:, : len(units) // 2].max(initial=0.0))
+    sizes = units * (size if size > 0.0 else 1.0)
+    return _Scales(units, sizes, np.finfo(float).eps * (slopes @ sizes))
+
+
+def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) -> NDArray[np.float64]:
     """Where Newton's method ends from each state, if it comes to an equilibrium."""
     step = np.full(states.shape, np.inf)
     longest = max(_LONGEST, float(np.abs(states).max(initial=0.0)))
@@ -94,19 +115,20 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64]) -> NDArray[np.flo
         states, step, rates, slopes = states[finite], step[finite], rates[finite], slopes[finite]
         if not len(states):
             return np.concatenate(at_kinks)
+        slopes = slopes * scales.units
         # Rates that change little, as beside a zero of higher order, count as others do.
         most = np.abs(slopes).max(axis=2, keepdims=True)
         most[most == 0.0] = 1.0
         step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), rates / most[..., 0])
+        step = step * scales.units
         length = np.abs(step).max(axis=1, keepdims=True)
         states = states + step * (longest / np.maximum(length, longest))
         if (length <= 1e-15 * (1.0 + np.abs(states).max(axis=1, keepdims=True))).all():
             break
     rates, slopes = rates_and_slopes(system, states)
     made_of = np.einsum("sij,sj->si", np.abs(slopes), np.abs(states) + np.abs(step))
-    settled = (np.abs(step) <= SAME * (1.0 + np.abs(states))).all(axis=1)
-    least = np.finfo(float).eps * np.abs(slopes).max(axis=(1, 2), initial=0.0)[:, None]
-    kept: NDArray[np.bool_] = settled & (np.abs(rates) <= _BALANCED * made_of + least).all(axis=1)
+    settled = (np.abs(step) <= SAME * (scales.sizes + np.abs(states))).all(axis=1)
+    kept: NDArray[np.bool_] = settled & (np.abs(rates) <= _BALANCED * made_of + scales.least).all(axis=1)
     return np.concatenate([states[kept], *at_kinks])
 
 
@@ -124,11 +146,9 @@ def rates_and_slopes(
     return found[:, :n], found[:, n:].reshape(count, n, n)
 
 
-def _equilibrium(
-    system: Hamiltonian, energy: Energy, state: NDArray[np.float64], size: NDArray[np.float64]
-) -> Equilibrium:
+def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64], scales: _Scales) -> Equilibrium:
     n = len(system.coordinates)
-    slopes = slopes_at(system, state)
+    slopes, (units, size, _) = slopes_at(system, state), scales
     if not np.isfinite(slopes).all():
         raise InvalidInput(
             "H",
@@ -137,7 +157,7 @@ def _equilibrium(
         )
     # Of rates with forces that no function has, nothing but the linear equations tells.
     second, off = _second(slopes[None])[0], np.abs(_second(rounding_of_slopes(system, state, size, slopes)[None])[0])
-    left = left_open(energy, state, size, np.ones(2 * n))
+    left = left_open(energy, state, size, units)
     if left is not None:
         beside = energy.slopes(np.stack([state + left, state - left]))[1]
         off = np.fmax(off, np.abs(beside - second).max(axis=0))
@@ -146,7 +166,7 @@ def _equilibrium(
     if about is not None and level:
         scaled = about.vectors * about.sizes[:, None]
         slopes = _rates_of((scaled * about.values) @ scaled.T * about.sizes * about.sizes[:, None])
-    values, vectors = np.linalg.eig(slopes)
+    values, vectors = np.linalg.eig(slopes * units / units[:, None])
     largest = np.abs(values).max(initial=0.0)
     # A pair of zeros that are level is told by half of the digits.
     least = _ON_THE_AXIS * largest if level else 0.0

@@ -219,12 +219,13 @@ class Flow:
         Returns
         -------
         ndarray, shape (2n, 2n)
-            Of a Hamiltonian it is symplectic; its determinant is 1 (Liouville).
+            Of a Hamiltonian it is symplectic; its determinant is 1 (Liouville). With constraints it is that of starts
+            on them: of rank 2d for d degrees of freedom, and 0 for what is across them at the start.
 
         Raises
         ------
         InvalidInput
-            With constraints, or more than 16 coordinates.
+            With more than 16 coordinates; for absolute values.
         ConvergenceError
             At a singularity.
 
@@ -239,7 +240,7 @@ class Flow:
         >>> bool(abs(np.linalg.det(flow) - 1.0) < 1e-12)
         True
         """
-        from visviva.generalized._changes import flow_jacobian
+        from visviva.generalized._neighbors import flow_jacobian
 
         return flow_jacobian(self, number("t", t), rtol=rtol)[1]
 
@@ -260,6 +261,8 @@ class Flow:
         Returns
         -------
         ndarray, shape (2n,)
+            With constraints as many as a state on them has free numbers: 2n less two for each holonomic one, and one
+            for each nonholonomic one.
 
         Raises
         ------
@@ -286,7 +289,7 @@ class Flow:
         >>> bool(abs(exponents.sum()) < 1e-12)
         True
         """
-        from visviva.generalized._changes import lyapunov_exponents
+        from visviva.generalized._neighbors import lyapunov_exponents
 
         interval, t = number("interval", interval), number("t", t)
         if interval <= 0.0:

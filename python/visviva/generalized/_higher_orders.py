@@ -104,6 +104,7 @@ def rises(
     ahead = (_DISTANCES[None, :, None] * rays[:, None, :]).reshape(-1, len(place))
     aside = np.zeros_like(ahead)
     at_rest, bent = energy.slopes(place[None])
+    back = np.zeros((len(place), len(place)))
     with np.errstate(all="ignore"):
         if others.shape[1]:
             back = others @ np.linalg.inv(others.T @ np.where(np.isfinite(bent[0]), bent[0], 0.0) @ others) @ others.T
@@ -118,7 +119,11 @@ def rises(
         directed = np.repeat(rays, len(_DISTANCES), axis=0)
         rise = (found * directed).sum(axis=1)
         seen = np.abs(rise) > _SEEN * (unknown * np.abs(directed)).sum(axis=1)
-        far = np.abs(aside * about.sizes).sum(axis=1) > _BESIDE * np.abs(ahead * about.sizes).sum(axis=1)
+        # What rounding of slopes makes others go is nothing.
+        noise = _ROUNDINGS * _EPSILON * (made_of @ np.abs(back).T)
+        far = (np.abs(aside) * about.sizes - noise * about.sizes).sum(axis=1) > _BESIDE * (
+            np.abs(ahead * about.sizes).sum(axis=1)
+        )
         beside = np.isfinite(rise) & ~far
     shape = (len(rays), len(_DISTANCES))
     return _nearest(np.where(seen, np.sign(rise), 0.0).reshape(shape), beside.reshape(shape))

@@ -20,12 +20,14 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._nodes import Expression
 
-__all__ = ["LAST_DIGITS", "Matrices", "Sizes", "matrices", "matrices_along", "nudges", "rounding"]
+__all__ = ["LAST_DIGITS", "Matrices", "Sizes", "balanced_units", "matrices", "matrices_along", "nudges", "rounding"]
 
 _EPSILON = float(np.finfo(float).eps)
 #: How far places and parameters are moved to see what rounding makes of a matrix, and how often.
 LAST_DIGITS = 2.0**-51
 _NUDGES = 3
+#: Rounds of balancing a matrix: a few are usual.
+_SWEEPS = 100
 #: Stiffnesses of more coordinates are too many to be taken apart.
 _FEW = 3
 
@@ -125,6 +127,30 @@ class Sizes:
         values = np.where(np.isfinite(values), values, 0.0)
         parts = np.split(values, np.cumsum([len(terms) for terms in several])[:-1], axis=1)
         return np.stack([part.sum(axis=1) for part in parts], axis=1)
+
+
+def balanced_units(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give units (S, n) of numbers in which rows and columns of matrices (S, n, n) of their rates are alike.
+
+    Powers of two, which round nothing (B. N. Parlett & C. Reinsch, Numer. Math. 13 (1969) 293).
+    """
+    n = matrices.shape[-1]
+    sizes = np.where(np.isfinite(matrices), np.abs(matrices), 0.0) * (1.0 - np.eye(n))
+    units = np.ones(matrices.shape[:-1])
+    for _ in range(_SWEEPS):
+        changed = False
+        for i in range(n):
+            row, column = sizes[:, i].max(axis=1), sizes[:, :, i].max(axis=1)
+            known = (row > 0.0) & (column > 0.0)
+            logarithms = np.log2(np.where(known, row, 1.0)) - np.log2(np.where(known, column, 1.0))
+            factor = np.exp2(np.rint(0.5 * logarithms))
+            changed |= bool((factor != 1.0).any())
+            sizes[:, :, i] *= factor[:, None]
+            sizes[:, i] /= factor[:, None]
+            units[:, i] *= factor
+        if not changed:
+            break
+    return units
 
 
 def nudges(count: int) -> list[NDArray[np.float64]]:

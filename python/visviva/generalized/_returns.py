@@ -212,8 +212,12 @@ def _shortest_time(system: _Of, start: NDArray[np.float64], rates: NDArray[np.fl
     with np.errstate(all="ignore"):
         hamiltonian = system._source.kind == "hamiltonian"
         frequency = np.sqrt(abs(found[0] * found[3] - found[1] * found[2] if hamiltonian else found[0] / found[3]))
-    if np.isfinite(frequency) and frequency > 0.0:
-        return float(1.0 / frequency)
+        # Next to an inflection a frequency tells nothing, and a fall from there all the same.
+        acceleration = abs(rates[1] * found[3]) if hamiltonian else abs(rates[1])
+        fall = np.sqrt(abs(start[0]) / acceleration)
+        known = [float(time) for time in (1.0 / frequency, fall) if np.isfinite(time) and time > 0.0]
+    if known:
+        return min(known)
     times = [abs(value / rate) for value, rate in zip(start, rates, strict=True) if value and rate]
     return float(min(times)) if times else float(1.0 / np.abs(rates).max())
 

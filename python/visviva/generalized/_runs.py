@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._accuracy import times_may_be_coarse
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
@@ -241,14 +242,30 @@ class Runs(States):
         progress: Progress,
     ) -> dict[str, Any]:
         threads = None if threads is None else whole_number("threads", threads)
+        span = asked["span"]
+        # Far from the time zero, times within a run have fewer digits than the run itself.
+        shift = span[0] if times_may_be_coarse(*span) and self._knows_no_time(asked) else 0.0
+        if shift:
+            asked = asked | {"span": (0.0, span[1] - shift), "outputs": asked["outputs"] - shift}
         if progress is False:
-            return self._model.run(asked, states, parameters, threads, None)
-        from visviva._progress import TIME, callback
+            result = self._model.run(asked, states, parameters, threads, None)
+        else:
+            from visviva._progress import TIME, callback
 
-        alone = (TIME, asked["span"])
-        of = alone if len(states) == 1 else ("copies", (0.0, float(len(states))))
-        with callback(progress, *of) as report:
-            return self._model.run(asked, states, parameters, threads, report)
+            alone = (TIME, span)
+            of = alone if len(states) == 1 else ("copies", (0.0, float(len(states))))
+            with callback(progress, *of) as report:
+                result = self._model.run(asked, states, parameters, threads, report)
+        if shift:
+            result |= {name: result[name] + shift for name in ("t", "found_t")}
+            result |= {name: [time + shift for time in result[name]] for name in ("reached", "last_t")}
+        return result
+
+    def _knows_no_time(self, asked: dict[str, Any]) -> bool:
+        """Whether nothing that is asked depends on the time itself, but for differences between times."""
+        of_events = [node[0] for event in asked["events"] for node in event["nodes"] or ()]
+        functions = any(event["function"] is not None for event in asked["events"])
+        return bool(self._structure["autonomous"]) and not functions and "time" not in of_events
 
     def plan(
         self,

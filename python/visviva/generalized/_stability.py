@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva.generalized._higher_orders import curvatures
+from visviva.generalized._matrices import balanced_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +25,8 @@ __all__ = ["is_stable", "level_and_held"]
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis: of a double zero half the
 #: digits are known.
 _ON_THE_AXIS = 1e-7
+#: Singular values below this part of the largest are zero.
+_LEVEL = 1e-12
 
 
 def is_stable(
@@ -63,7 +66,24 @@ def _block(
     first_order[:n, n:] = np.eye(n)
     first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
     eigenvalues = np.linalg.eigvals(first_order)
-    return bool(np.all(eigenvalues.real <= _ON_THE_AXIS * np.abs(eigenvalues).max()))
+    grows = np.any(eigenvalues.real > _ON_THE_AXIS * np.abs(eigenvalues).max())
+    return not grows and not _is_pushed(np.linalg.solve(mass, stiffness))
+
+
+def _is_pushed(stiffness: NDArray[np.float64]) -> bool:
+    """Whether a displacement to which nothing returns forces one along which nothing does: K² has more zeros than K.
+
+    Such a motion grows as t², as that of a blade that is turned on an incline.
+    """
+    units = balanced_units(stiffness[None])[0]
+    once = stiffness * units / units[:, None]
+    zeros = [
+        int((sizes <= _LEVEL * sizes[0]).sum())
+        if (sizes := np.linalg.svd(power, compute_uv=False))[0] > 0.0
+        else len(once)
+        for power in (once, once @ once)
+    ]
+    return zeros[1] > zeros[0]
 
 
 def _lowest(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> float | None:

@@ -26,6 +26,8 @@ const UNBALANCED: f64 = 1e-10;
 const SINGULAR: f64 = 1e-10;
 /// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
 const ROTATIONS: usize = 100_000;
+/// Rounds of balancing a matrix: a few are usual.
+const SWEEPS: usize = 100;
 
 /// Codes of forces at rest and of the matrices of small motions.
 #[derive(Clone, Debug)]
@@ -259,6 +261,7 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
     if first_order.iter().any(|x| !x.is_finite()) {
         return Err(outside());
     }
+    balance(&mut first_order);
     let schur = Schur::try_new(first_order, f64::EPSILON, ROTATIONS).ok_or_else(outside)?;
     let eigenvalues = schur.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
     let scale = stiffness.amax();
@@ -283,6 +286,34 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
             Some((squares, rows))
         });
     Ok(Modes { eigenvalues, symmetric })
+}
+
+/// Takes units for each number of a state in which rows and columns are alike, so that rounding of the largest entries is not
+/// that of all: powers of two, which round nothing (B. N. Parlett & C. Reinsch, Numer. Math. 13 (1969) 293).
+fn balance(matrix: &mut DMatrix<f64>) {
+    let n = matrix.nrows();
+    for _ in 0..SWEEPS {
+        let mut balanced = true;
+        for i in 0..n {
+            let beside = |of: &dyn Fn(usize) -> f64| (0..n).filter(|&j| j != i).map(of).fold(0.0, f64::max);
+            let (row, column) = (beside(&|j| matrix[(i, j)].abs()), beside(&|j| matrix[(j, i)].abs()));
+            let factor = (0.5 * (row.log2() - column.log2())).round();
+            if row > 0.0 && column > 0.0 && factor != 0.0 {
+                balanced = false;
+                matrix.column_mut(i).iter_mut().for_each(|x| *x = scaled(*x, factor));
+                matrix.row_mut(i).iter_mut().for_each(|x| *x = scaled(*x, -factor));
+            }
+        }
+        if balanced {
+            return;
+        }
+    }
+}
+
+/// x · 2^power, whose parts may be beyond all numbers.
+fn scaled(x: f64, power: f64) -> f64 {
+    let half = (0.5 * power).trunc();
+    x * half.exp2() * (power - half).exp2()
 }
 
 /// Whether all entries are numbers.

@@ -39,19 +39,17 @@ pub(super) fn rates_as_nodes(model: &mut Model) -> Vec<Id> {
     }
 }
 
-/// A model whose state is (y, Φ), Φ row by row.
+/// A model whose state is (y, Φ), Φ row by row. Of constraints it has what keeps rates on them, and no projection.
 ///
 /// # Errors
-/// Constraints; more coordinates than there is room for.
+/// More coordinates than there is room for.
 pub fn variational(model: &Model) -> Result<Model> {
     let mut model = model.clone();
     let n = model.numbers();
-    if !model.multipliers.is_empty() || model.source.coordinates > MOST_COORDINATES {
+    if model.source.coordinates > MOST_COORDINATES {
         return Err(Error::invalid(
             "L",
-            format!(
-                "the flow's derivatives are those of up to {MOST_COORDINATES} coordinates without constraints"
-            ),
+            format!("the flow's derivatives are those of up to {MOST_COORDINATES} coordinates"),
         ));
     }
     let mut rates = rates_as_nodes(&mut model);
@@ -68,6 +66,7 @@ pub fn variational(model: &Model) -> Result<Model> {
     }
     model.rates = rates.into_iter().map(Output::Node).collect();
     model.systems = vec![];
+    (model.multipliers, model.source.holonomic, model.source.nonholonomic) = Default::default();
     model.numbers = n + n * n;
     model.form = Form::FirstOrder(model.numbers);
     let inputs = (model.numbers, model.source.parameters);

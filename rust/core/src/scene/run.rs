@@ -5,7 +5,7 @@ mod derived;
 mod events;
 mod patterns;
 mod reached;
-mod resolved;
+pub(super) mod resolved;
 mod turning;
 
 use super::Scene;

@@ -1,5 +1,6 @@
 //! A run with collisions: every copy by itself, leg after leg, put together as one run.
 
+mod jumps;
 mod leg;
 mod member;
 mod squeezed;

@@ -71,6 +71,13 @@ impl Events {
         }
     }
 
+    /// Adds an event, with the states of all bodies.
+    pub fn put(&mut self, copy: usize, which: usize, t: f64, bodies: impl Iterator<Item = [[f64; 3]; 2]>) {
+        let states = self.states.len();
+        self.states.extend(bodies);
+        self.lines.push(Line { copy, which, t, states, spheres: None });
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.lines.len()

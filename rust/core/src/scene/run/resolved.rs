@@ -119,7 +119,7 @@ pub(super) fn look(
 }
 
 /// Kinetic and potential energy.
-fn energy_of(
+pub(in crate::scene) fn energy_of(
     scene: &Scene,
     copy: usize,
     (position, velocity): (&[[f64; 3]], &[[f64; 3]]),

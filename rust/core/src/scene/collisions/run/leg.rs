@@ -68,7 +68,7 @@ impl Leg {
     }
 
     /// What is looked at, of the bodies that are there; none of two that have become one.
-    fn what(&self, what: &What) -> Option<What> {
+    pub(super) fn what(&self, what: &What) -> Option<What> {
         let place = |body: &usize| self.places[*body];
         Some(match what {
             What::Distance { bodies: (i, j), length } => {

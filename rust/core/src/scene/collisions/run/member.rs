@@ -45,12 +45,12 @@ pub(super) struct Member {
     pub(super) from: u64,
     /// Where the last leg began.
     pub(super) begun: Reached,
-    copy: usize,
+    pub(super) copy: usize,
     rule: Collisions,
     met: BTreeMap<(usize, usize), Met>,
     squeezed: Squeezed,
     /// How often each event was found.
-    found: Vec<u64>,
+    pub(super) found: Vec<u64>,
 }
 
 impl Member {
@@ -86,7 +86,7 @@ impl Member {
                 let nothing = Request { events: Vec::new(), ..request.clone() };
                 let _ = member.leg(scene, &nothing, (at_start, None), ticker)?;
             }
-            if !member.collide(None) {
+            if !member.collide(None) || member.outcome.rows == request.times.len() {
                 return Ok(member);
             }
             touching = member.bodies.touching();
@@ -96,8 +96,15 @@ impl Member {
             let Some(pair) = member.leg(scene, request, (end, Some(&touching)), ticker)? else {
                 return Ok(member);
             };
+            let before = member.values(scene, request, ticker)?;
+            let goes_on = member.collide(Some(pair));
+            let after = member.values(scene, request, ticker)?;
+            if !member.jump(request, &before, &after) && goes_on {
+                member.outcome.ending = Ending::Stopped;
+                return Ok(member);
+            }
             // Who has nothing more to record is where the collision has put it.
-            if !member.collide(Some(pair)) || member.outcome.rows == end {
+            if !goes_on || member.outcome.rows == end {
                 return Ok(member);
             }
             touching = member.bodies.touching();

@@ -95,6 +95,9 @@ impl Search<'_, '_> {
             let ends = [(0.0, self.ends[0]), (1.0, self.ends[1])];
             return Ok(vec![zero(ends, |theta| self.value_at(theta, step, ticker))?]);
         }
+        if self.rests() {
+            return Ok(Vec::new());
+        }
         if crosses(self.ends[0], self.ends[1])
             && let Some((theta, slope)) = self.straight(ticker)?
         {
@@ -171,6 +174,19 @@ impl Search<'_, '_> {
         // Between two zeros to one side there is one to the other, which is not this near.
         zeros.dedup_by(|later, before| later.1 == before.1 && later.0 - before.0 <= ONE_ZERO);
         Ok(zeros.into_iter().map(|(theta, _)| theta).collect())
+    }
+
+    /// Whether nothing moves that is looked at, where it is to rounding: what rests on a plane does not pass it.
+    fn rests(&self) -> bool {
+        let what = &self.watch.event(self.event).0.what;
+        let by_place = matches!(what, What::Plane { .. } | What::Distance { .. });
+        let sights = [&self.watch.sights[self.event], &self.watch.next[self.event]];
+        let still = |(sight, value): (&Sight, f64)| {
+            let rounding = self.watch.event(self.event).0.rounding(sight);
+            value.abs() <= rounding
+                && self.rate(sight).is_some_and(|rate| (rate * self.length()).abs() <= rounding)
+        };
+        by_place && sights.into_iter().zip(self.ends).all(still)
     }
 
     /// Where the step is sampled.

@@ -1,0 +1,175 @@
+"""What neighbors of a motion do: derivatives of the flow, and Lyapunov's exponents.
+
+The one idea: the variational equations are run beside the motion itself. On constraints neighbors are on them, too:
+what rounding leaves across them is taken out of the state and of all small differences, from part to part.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva.errors import ConvergenceError, Interrupted, InvalidInput
+from visviva.generalized._calculus import Calculus
+from visviva.generalized._consistency import constraints_and_rates
+from visviva.generalized._whole import whole
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._system import GeneralizedSystem
+    from visviva.integrators import Method
+    from visviva.typing import GeneralizedMethodName
+
+__all__ = ["MOST_STEPS", "flow_jacobian", "lyapunov_exponents", "refuse_kinks"]
+
+#: The most steps of a run.
+MOST_STEPS = 100_000_000
+#: Where the least growth of neighbors is below this part of the most, it has lost as many of its digits.
+_DROWNED = 1e-5
+#: Steps after which neighbors are put on constraints again.
+_STEPS_OF_A_PART = 16
+
+
+class _Neighbors:
+    """Small differences between states: all, or those along constraints."""
+
+    def __init__(self, system: GeneralizedSystem) -> None:
+        self._system: Any = system
+        self.numbers = 2 * len(system.coordinates)
+        self.constrained = bool(system._source.kind == "lagrangian" and self._system._constraints())
+        if self.constrained:
+            self._calculus = c = Calculus(system)
+            holonomic, rates = constraints_and_rates(c, self._system)
+            rows = c.with_derivatives([*holonomic, *rates])
+            self._slopes = [slope for row in rows for slope in row[1 : 1 + self.numbers]]
+
+    def directions(self, t: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give orthonormal ones (2n, d), in columns."""
+        n = self.numbers
+        if not self.constrained:
+            return np.eye(n)
+        found = self._calculus.values(self._slopes, np.array([t]), state[None], self._system._values)
+        across = found.reshape(-1, n)
+        _, sizes, turned = np.linalg.svd(across / np.linalg.norm(across, axis=1, keepdims=True))
+        rank = int((sizes > np.finfo(float).eps * n * sizes[0]).sum())
+        along: NDArray[np.float64] = turned[rank:].T
+        return along
+
+    def put_on(
+        self, t: float, state: NDArray[np.float64], frame: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Give a state and small differences (2n, d) on the constraints."""
+        if not self.constrained:
+            return state, frame
+        state = self._system._model.projected(t, state, self._system._values)[2]
+        along = self.directions(t, state)
+        return state, along @ (along.T @ frame)
+
+    def parts(self, asked: dict[str, Any]) -> NDArray[np.float64]:
+        """Give times between which rounding may leave the constraints: the ends of the run, without any."""
+        begin, end = asked["span"]
+        if not self.constrained:
+            return np.array([begin, end])
+        model, system = self._system._model, self._system
+        result = model.run(asked, system._start()[None, :], system._values[None, :], 1, None)
+        whole(result, "flow")
+        return np.linspace(begin, end, 1 + max(1, int(result["steps"][0]) // _STEPS_OF_A_PART))
+
+
+def flow_jacobian(
+    system: GeneralizedSystem,
+    t: float,
+    *,
+    rtol: float = 1e-12,
+    method: GeneralizedMethodName | Method = "gauss16",
+    most_steps: int = MOST_STEPS,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the state at ``t``, and its derivatives with respect to the state at the start."""
+    n = 2 * len(system.coordinates)
+    refuse_kinks(system)
+    system._check_start()
+    asked, _ = system._asked(t, method, rtol, None, None)
+    asked["max_steps"] = most_steps
+    model, neighbors = system._model.variational(), _Neighbors(system)
+    state = system._start()
+    along = neighbors.directions(system.t0, state)
+    frame = along @ along.T
+    for begin, end in pairwise(neighbors.parts(asked)):
+        part = asked | {"span": (begin, end), "outputs": np.array([end])}
+        both = np.concatenate([state, frame.ravel()])
+        result = model.run(part, both[None, :], system._values[None, :], 1, None)
+        whole(result, "flow")
+        last = result["y"][-1]
+        state, frame = neighbors.put_on(end, last[:n], last[n:].reshape(n, n))
+    return state, frame
+
+
+def refuse_kinks(system: GeneralizedSystem) -> None:
+    if system._structure["kinks"]:
+        raise InvalidInput(
+            "system",
+            "expected a function without absolute values: where one turns the derivatives of a motion jump, which "
+            "variational equations do not tell; compare runs from neighboring starts",
+        )
+
+
+def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
+    """Give all exponents, by the variational equations and orthonormal frames."""
+    n = 2 * len(system.coordinates)
+    refuse_kinks(system)
+    system._check_start()
+    model, neighbors = system._model.variational(), _Neighbors(system)
+    parts = max(1, round(abs(t - system.t0) / interval))
+    times = np.linspace(system.t0, t, parts + 1)
+    state = system._start()
+    frame = neighbors.directions(system.t0, state)
+    several = frame.shape[1]
+    sums = np.zeros(several)
+    # Parts that are still to come, the next one last.
+    pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
+    shortest = 1e-6 * abs(t - system.t0) / parts
+    while pending:
+        begin, end = pending.pop()
+        asked = {
+            "method": "gauss16",
+            "span": (begin, end),
+            "rtol": rtol,
+            "atol": None,
+            "dt": None,
+            "max_step": None,
+            "max_steps": MOST_STEPS,
+            "outputs": np.array([end]),
+            "events": [],
+        }
+        all_of_them = np.zeros((n, n))
+        all_of_them[:, :several] = frame
+        both = np.concatenate([state, all_of_them.ravel()])
+        result = model.run(asked, both[None, :], system._values[None, :], 1, None)
+        if result["interrupted"]:
+            raise Interrupted("the exponents were interrupted")
+        failed, stretch = result["failures"][0], np.zeros(several)
+        if failed is None and np.isfinite(result["y"][-1]).all():
+            last = result["y"][-1]
+            after, moved = neighbors.put_on(end, last[:n], last[n:].reshape(n, n)[:, :several])
+            turned, sizes = np.linalg.qr(moved)
+            stretch = np.abs(np.diag(sizes))
+        # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal again
+        # before that.
+        if stretch.min() <= _DROWNED * stretch.max():
+            if abs(end - begin) <= shortest:
+                raise ConvergenceError(
+                    failed or "what neighbors do differs too much in the shortest time to be told apart", begin
+                )
+            middle = begin + 0.5 * (end - begin)
+            pending += [(middle, end), (begin, middle)]
+            continue
+        state, frame = after, turned
+        sums += np.log(stretch)
+    return np.sort(sums / (t - system.t0))[::-1]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
