@@ -85,7 +85,7 @@ def _sizes(system: Lagrangian, state: NDArray[np.float64]) -> tuple[list[float],
     return sizes(holonomic, n), sizes(rates, 2 * n)
 
 
-def constraints_and_rates(c: Calculus, system: Lagrangian) -> tuple[list[Expression], list[Expression]]:
+def constraints_and_rates(c: Calculus, system: GeneralizedSystem) -> tuple[list[Expression], list[Expression]]:
     """Give what vanishes on constraints: the holonomic ones, and the rates of all."""
     n, description, v = len(system.coordinates), system._source.description, c.velocities()
     holonomic = c.adopted(description["nodes"], description["holonomic"])

@@ -108,7 +108,7 @@ class Constrained:
         ]
         #: Which coordinates have a constraint in common, and which none at all.
         self._together = _connected(np.array(known, dtype=bool))
-        self.without_any = ~np.array(known, dtype=bool).any(axis=0)
+        self.without_any: NDArray[np.bool_] = np.all(~np.array(known, dtype=bool), axis=0)
         directions = [each for row in holonomic for each in row[1 : 1 + n]]
         directions += [each for row in others for each in row[1 + n : 1 + 2 * n]]
         turning = [each for row in c.with_derivatives(directions) for each in row[1 : 1 + n]]

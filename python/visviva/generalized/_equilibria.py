@@ -162,6 +162,11 @@ def _once(
     return sorted(places, key=tuple)
 
 
+def _is_one(apart: NDArray[np.float64], left: NDArray[np.float64], distinguishing: NDArray[np.bool_]) -> bool:
+    """Whether two places (n) so far apart are one, as far as forces tell and coordinates distinguish them."""
+    return not np.any((np.abs(apart) > left) & distinguishing)
+
+
 def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool) -> list[Equilibrium]:
     """Equilibria on constraints, from starts, or of those within what starts all over a turn reach on them."""
     constrained = Constrained(system)
@@ -182,7 +187,7 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     apart: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
     looked_at = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
     for found in _once(reached, starts, distinguishing):
-        if any((np.abs(found - other) <= left)[distinguishing].all() for other, left in apart):
+        if any(_is_one(found - other, left, distinguishing) for other, left in apart):
             continue
         try:
             place, balance = found, constrained.balance(found, looked_at)

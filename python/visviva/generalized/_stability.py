@@ -67,7 +67,7 @@ def _block(
     first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
     eigenvalues = np.linalg.eigvals(first_order)
     grows = np.any(eigenvalues.real > _ON_THE_AXIS * np.abs(eigenvalues).max())
-    return not grows and not _is_pushed(np.linalg.solve(mass, stiffness))
+    return not grows and not _is_pushed(np.linalg.solve(mass, stiffness).astype(np.float64))
 
 
 def _is_pushed(stiffness: NDArray[np.float64]) -> bool:

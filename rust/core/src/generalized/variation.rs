@@ -67,6 +67,7 @@ pub fn variational(model: &Model) -> Result<Model> {
     model.rates = rates.into_iter().map(Output::Node).collect();
     model.systems = vec![];
     (model.multipliers, model.source.holonomic, model.source.nonholonomic) = Default::default();
+    model.projection = None;
     model.numbers = n + n * n;
     model.form = Form::FirstOrder(model.numbers);
     let inputs = (model.numbers, model.source.parameters);
