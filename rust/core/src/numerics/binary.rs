@@ -22,6 +22,9 @@ pub(super) const COUNTING: i64 = 1075 << 52;
 
 /// Scalars whose bits are those of binary64.
 pub trait Binary: Real {
+    /// Whether each operation is a function of its own, as [where nothing is fast](super::lanes): then what is made of many
+    /// is one, too, lest all of them be written into every kernel.
+    const APART: bool = false;
     /// 2ⁿ for integers n from -1022 to 1023; anything else is a broken promise of the caller.
     fn power_of_two(self) -> Self;
     /// 1/√self to 3.5 %, for positive normal numbers.
@@ -58,6 +61,7 @@ impl Binary for f64 {
 }
 
 impl Binary for Lanes {
+    const APART: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
     #[inline(always)]
     fn power_of_two(self) -> Self {
         self.map(f64::power_of_two)

@@ -140,11 +140,13 @@ impl Exponential for f64 {
     }
 }
 impl Exponential for Lanes {
-    #[inline(always)]
+    #[cfg_attr(all(target_arch = "x86_64", not(target_feature = "fma")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "x86_64", not(target_feature = "fma"))), inline(always))]
     fn exp(self) -> Self {
         exponential(self)
     }
-    #[inline(always)]
+    #[cfg_attr(all(target_arch = "x86_64", not(target_feature = "fma")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "x86_64", not(target_feature = "fma"))), inline(always))]
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
         falling(x)
     }

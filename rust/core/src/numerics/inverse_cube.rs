@@ -31,6 +31,9 @@ const INVERSE_ROOT: [f64; 4] = [
 /// The first half of [`InverseCube::inverse_cubes`]: 1/√s, cut off after 17 bits.
 #[inline(always)]
 pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
+    if S::APART && N > 1 {
+        return each!(i < N => root_apart(s[i]));
+    }
     let one = S::one();
     let [c0, c1, c2, c3] = INVERSE_ROOT;
     // Not `map`, which may be compiled without the tier's instructions.
@@ -47,6 +50,9 @@ pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
 /// The second half: `s^(-3/2)` from `s` and its [`inverse_roots`] `y`, and exactly 0 from `s = y = 0`.
 #[inline(always)]
 pub(crate) fn inverse_cubes_from<S: Binary, const N: usize>(s: [S; N], y: [S; N]) -> [S; N] {
+    if S::APART && N > 1 {
+        return each!(i < N => cube_apart(s[i], y[i]));
+    }
     let one = S::one();
     let square = each!(i < N => y[i] * y[i]);
     let e = each!(i < N => s[i].multiply_subtract_from(square[i], one));
@@ -56,6 +62,18 @@ pub(crate) fn inverse_cubes_from<S: Binary, const N: usize>(s: [S; N], y: [S; N]
     let part = each!(i < N => e[i] * cube[i]);
     let series = each!(i < N => e[i].multiply_add(series[i], S::splat(1.5)));
     each!(i < N => part[i].multiply_add(series[i], cube[i]))
+}
+
+#[inline(never)]
+fn root_apart<S: Binary>(s: S) -> S {
+    let [root] = inverse_roots([s]);
+    root
+}
+
+#[inline(never)]
+fn cube_apart<S: Binary>(s: S, y: S) -> S {
+    let [cube] = inverse_cubes_from([s], [y]);
+    cube
 }
 
 /// Scalars that have the power -3/2.

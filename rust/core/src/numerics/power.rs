@@ -176,7 +176,8 @@ impl Powers for f64 {
     }
 }
 impl Powers for Lanes {
-    #[inline(always)]
+    #[cfg_attr(all(target_arch = "x86_64", not(target_feature = "fma")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "x86_64", not(target_feature = "fma"))), inline(always))]
     fn power(self, by: &Power) -> Self {
         power(self, by)
     }
