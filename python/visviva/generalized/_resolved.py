@@ -104,10 +104,15 @@ def _look_at_steps(done: _Done) -> None:
     """Warn of the copy whose first step, or one that would follow on the last, is off by most of its velocities."""
     asked, (start, end) = done.asked, done.asked["span"]
     copies, numbers = done.starts.shape
-    steps = np.full(copies, np.ceil(abs(end - start) / asked["dt"]), dtype=np.int64)
-    if not steps_may_be_taken_again(steps, numbers).any():
+    taken = np.full(copies, np.ceil(abs(end - start) / asked["dt"]), dtype=np.int64)
+    if not steps_may_be_taken_again(taken, numbers).any():
         return
-    errors = [_off_after_a_step(done, before) for before in ((done.starts, done.system.t0), done.lasts)]
+    # Of a method of first order two steps, too: they move what rests from where it is, which forces notice in the next.
+    steps = (1, 2) if asked["method"] in _of_first_order() else (1,)
+    errors = [
+        np.max([_off_after_steps(done, before, number) for number in steps], axis=0)
+        for before in ((done.starts, done.system.t0), done.lasts)
+    ]
     at_end = bool(np.max(errors[1]) > np.max(errors[0]))
     copy = int(np.argmax(errors[at_end]))
     error = float(errors[at_end][copy])
@@ -117,21 +122,16 @@ def _look_at_steps(done: _Done) -> None:
 
 @cache
 def _of_first_order() -> frozenset[str]:
-    """The methods of which two steps are looked at.
-
-    They move what rests from where it is, which forces notice in the next one.
-    """
     return frozenset(method["name"] for method in _core.methods() if method["order"] == 1)
 
 
-def _off_after_a_step(done: _Done, before: tuple[NDArray[np.float64], float]) -> NDArray[np.float64]:
-    """How far velocities (B,) are off after one step, by two of half its length, in the metric of the kinetic energy.
+def _off_after_steps(done: _Done, before: tuple[NDArray[np.float64], float], steps: int) -> NDArray[np.float64]:
+    """How far velocities (B,) are off after steps, by those of half their length, in the metric of the kinetic energy.
 
     As parts of the largest on the way, or at the end: what is lost where hardly anything moves yet is nothing.
     """
     system, asked, (states, t) = done.system, done.asked, before
     n, dt = len(system.coordinates), asked["dt"]
-    steps = 2 if asked["method"] in _of_first_order() else 1
     at = t + steps * float(np.copysign(dt, asked["span"][1] - asked["span"][0]))
     after = []
     for length in (dt, 0.5 * dt):

@@ -163,11 +163,13 @@ fn pairs(
     if job.from.is_none() {
         let mut start = end.clone();
         fixed::lay(job.plan, units, &mut start);
-        let after = halved(job, &start, 0, dynamics, ticker)?;
-        pairs.push(Pair { by: Evidence::FirstStep, before: start, after });
+        for after in halved(job, &start, 0, dynamics, ticker)? {
+            pairs.push(Pair { by: Evidence::FirstStep, before: start.clone(), after });
+        }
     }
-    let after = halved(job, end, node, dynamics, ticker)?;
-    pairs.push(Pair { by: Evidence::StepFromTheEnd, before: end.clone(), after });
+    for after in halved(job, end, node, dynamics, ticker)? {
+        pairs.push(Pair { by: Evidence::StepFromTheEnd, before: end.clone(), after });
+    }
     if matches!(job.plan.method.scheme, Scheme::Multistep(_)) {
         let [mut own, mut begun] = [end.clone(), end.clone()];
         method.between(node, job.step(), &mut begun, dynamics, ticker)?;
@@ -178,7 +180,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// The states to which one step leads, and two of half its length. Of a method of first order two steps, and four: it moves
+/// The states to which one step leads, and two of half its length. Of a method of first order two steps and four, too: it moves
 /// bodies at rest from where they are, which forces notice in the next one.
 fn halved(
     job: &Job<'_>,
@@ -186,20 +188,24 @@ fn halved(
     node: u64,
     dynamics: &mut Dynamics<Lanes>,
     ticker: &mut Ticker<'_>,
-) -> Result<[State<Lanes>; 2]> {
+) -> Result<Vec<[State<Lanes>; 2]>> {
     let [mut whole, mut halves] = [before.clone(), before.clone()];
     let mut step = stepper(job.plan.method, job.step(), dynamics, before)?;
     let mut half = stepper(job.plan.method, 0.5 * job.step(), dynamics, before)?;
     let steps = if job.plan.method.order == 1 { 2 } else { 1 };
-    for part in 0..steps {
+    let mut all = Vec::with_capacity(steps);
+    for part in 0..steps as u64 {
         let _one = step.step(node + part, 1, &mut whole, dynamics, ticker)?;
+        for part in 2 * part..2 * part + 2 {
+            let _one = half.step(2 * node + part, 1, &mut halves, dynamics, ticker)?;
+        }
+        let mut reached = [whole.clone(), halves.clone()];
+        let [by_whole, by_halves] = &mut reached;
+        step.settle(by_whole);
+        half.settle(by_halves);
+        all.push(reached);
     }
-    step.settle(&mut whole);
-    for part in 0..2 * steps {
-        let _one = half.step(2 * node + part, 1, &mut halves, dynamics, ticker)?;
-    }
-    half.settle(&mut halves);
-    Ok([whole, halves])
+    Ok(all)
 }
 
 impl Pair {
