@@ -91,3 +91,18 @@ def test_what_is_compiled_once_is_told_parameters_and_places_each_time() -> None
         small = pendulum.at(parameters={"g": g}).linearize(at=[0.0])
         assert small.frequencies[0] == pytest.approx((g / 2.0) ** 0.5, rel=1e-15, abs=0)
         assert [each.stable for each in pendulum.at(parameters={"g": g}).equilibria()] == [False, True, False]
+
+
+@pytest.mark.parametrize("soft", [1e-4, 1e-7, 1e-9, -1e-7])
+def test_soft_directions_beside_gyroscopic_terms_are_not_level(soft: float) -> None:
+    """K² has the square of the condition of K: its small numbers are no zeros."""
+    turning = vv.Lagrangian(
+        lambda q, v, t: (
+            (v[0] ** 2 + v[1] ** 2) / 2
+            - (np.sign(soft) * q[0] ** 2 + soft * q[1] ** 2) / 2
+            + 2.5 * (q[0] * v[1] - q[1] * v[0])
+        ),
+        ["x", "y"],
+        position=[0.0, 0.0],
+    )
+    assert turning.linearize().stable

@@ -289,12 +289,22 @@ def test_what_a_collision_makes_jump_is_an_event() -> None:
     assert [int(which) for which in out.events.which] == [0, 2, 3]
     np.testing.assert_array_equal(out.events.t, [out.collisions.t[0]] * 3)
     # The state is that after it.
-    np.testing.assert_allclose(out.events.velocity[:, 0, 0], 0.0, atol=1e-15)
+    np.testing.assert_allclose(out.events.velocity[:, 0, 0], 0.0, rtol=0.0, atol=1e-15)
     back = out.final.run(t=0.0, collisions="bounce", restitution=1.0, events=[vv.events.apsis(0, 1)])
     assert len(back.events) == len(back.collisions)
     many = TWO_BALLS.ensemble(velocity=[[[1.0, 0, 0], [0, 0, 0]], [[0.5, 0, 0], [0, 0, 0]]])
     stopped = many.run(5.0, collisions="bounce", restitution=0.5, events=[vv.events.energy(0.4, terminal=True)])
     assert [vv.Status(int(each)) for each in stopped.status] == [vv.Status.STOPPED, vv.Status.OK]
+
+
+def test_a_function_that_fails_in_a_collision_is_told() -> None:
+    def slow(t: float, position: np.ndarray, velocity: np.ndarray) -> float:
+        if velocity[0, 0] < 0.5:
+            raise ValueError("too slow")
+        return 1.0
+
+    with pytest.raises(ValueError, match="too slow"):
+        TWO_BALLS.run(5.0, collisions="bounce", events=[slow])
 
 
 @pytest.mark.parametrize("method", ["auto", "leapfrog", "rk4", "taylor"])

@@ -220,7 +220,8 @@ class Flow:
         -------
         ndarray, shape (2n, 2n)
             Of a Hamiltonian it is symplectic; its determinant is 1 (Liouville). With constraints it is that of starts
-            on them: of rank 2d for d degrees of freedom, and 0 for what is across them at the start.
+            on them: of rank 2d for d degrees of freedom, and 0 for places, and for velocities, that are across them at
+            the start.
 
         Raises
         ------

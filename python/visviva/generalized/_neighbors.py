@@ -29,6 +29,8 @@ __all__ = ["MOST_STEPS", "flow_jacobian", "lyapunov_exponents", "refuse_kinks"]
 MOST_STEPS = 100_000_000
 #: Where the least growth of neighbors is below this part of the most, it has lost as many of its digits.
 _DROWNED = 1e-5
+#: Singular values above this part of the largest are none of constraints that depend on each other.
+_INDEPENDENT = 1e-12
 #: Steps after which neighbors are put on constraints again.
 _STEPS_OF_A_PART = 16
 
@@ -43,30 +45,43 @@ class _Neighbors:
         if self.constrained:
             self._calculus = c = Calculus(system)
             holonomic, rates = constraints_and_rates(c, self._system)
+            self._holonomic = len(holonomic)
             rows = c.with_derivatives([*holonomic, *rates])
             self._slopes = [slope for row in rows for slope in row[1 : 1 + self.numbers]]
 
     def directions(self, t: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
         """Give orthonormal ones (2n, d), in columns."""
-        n = self.numbers
         if not self.constrained:
-            return np.eye(n)
-        found = self._calculus.values(self._slopes, np.array([t]), state[None], self._system._values)
-        across = found.reshape(-1, n)
-        _, sizes, turned = np.linalg.svd(across / np.linalg.norm(across, axis=1, keepdims=True))
-        rank = int((sizes > np.finfo(float).eps * n * sizes[0]).sum())
-        along: NDArray[np.float64] = turned[rank:].T
+            return np.eye(self.numbers)
+        n = self.numbers // 2
+        of_places, by_places, by_velocities = self._slopes_at(t, state)
+        places, velocities = _null(of_places), _null(by_velocities)
+        moved = -np.linalg.pinv(by_velocities) @ (by_places @ places)
+        frame = np.block([[places, np.zeros((n, velocities.shape[1]))], [moved, velocities]])
+        along: NDArray[np.float64] = np.linalg.qr(frame)[0]
         return along
 
     def put_on(
         self, t: float, state: NDArray[np.float64], frame: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Give a state and small differences (2n, d) on the constraints."""
+        """Give a state and small differences (2n, d) on the constraints: places first, in any units of velocities."""
         if not self.constrained:
             return state, frame
         state = self._system._model.projected(t, state, self._system._values)[2]
-        along = self.directions(t, state)
-        return state, along @ (along.T @ frame)
+        of_places, by_places, by_velocities = self._slopes_at(t, state)
+        places, velocities = np.split(frame, 2)
+        places = places - np.linalg.pinv(of_places) @ (of_places @ places)
+        velocities = velocities - np.linalg.pinv(by_velocities) @ (by_places @ places + by_velocities @ velocities)
+        return state, np.concatenate([places, velocities])
+
+    def _slopes_at(
+        self, t: float, state: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Of holonomic constraints by places (h, n), and of the rates of all by places and velocities (m, n)."""
+        n = self.numbers // 2
+        found = self._calculus.values(self._slopes, np.array([t]), state[None], self._system._values)
+        rows = found.reshape(-1, 2 * n)
+        return rows[: self._holonomic, :n], rows[self._holonomic :, :n], rows[self._holonomic :, n:]
 
     def parts(self, asked: dict[str, Any]) -> NDArray[np.float64]:
         """Give times between which rounding may leave the constraints: the ends of the run, without any."""
@@ -77,6 +92,13 @@ class _Neighbors:
         result = model.run(asked, system._start()[None, :], system._values[None, :], 1, None)
         whole(result, "flow")
         return np.linspace(begin, end, 1 + max(1, int(result["steps"][0]) // _STEPS_OF_A_PART))
+
+
+def _null(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give orthonormal vectors (n, d), in columns, that rows (m, n) take to zero."""
+    _, sizes, turned = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+    found: NDArray[np.float64] = turned[int((sizes > _INDEPENDENT * sizes.max(initial=0.0)).sum()) :].T
+    return found
 
 
 def flow_jacobian(
@@ -95,8 +117,7 @@ def flow_jacobian(
     asked["max_steps"] = most_steps
     model, neighbors = system._model.variational(), _Neighbors(system)
     state = system._start()
-    along = neighbors.directions(system.t0, state)
-    frame = along @ along.T
+    _, frame = neighbors.put_on(system.t0, state, np.eye(n))
     for begin, end in pairwise(neighbors.parts(asked)):
         part = asked | {"span": (begin, end), "outputs": np.array([end])}
         both = np.concatenate([state, frame.ravel()])
@@ -128,6 +149,8 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     frame = neighbors.directions(system.t0, state)
     several = frame.shape[1]
     sums = np.zeros(several)
+    if not several:
+        return sums
     # Parts that are still to come, the next one last.
     pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
     shortest = 1e-6 * abs(t - system.t0) / parts

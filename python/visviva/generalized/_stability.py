@@ -27,6 +27,8 @@ __all__ = ["is_stable", "level_and_held"]
 _ON_THE_AXIS = 1e-7
 #: Singular values below this part of the largest are zero.
 _LEVEL = 1e-12
+#: The cosine of directions that are at a right angle but for round-off.
+_APART = 1e-7
 
 
 def is_stable(
@@ -71,19 +73,18 @@ def _block(
 
 
 def _is_pushed(stiffness: NDArray[np.float64]) -> bool:
-    """Whether a displacement to which nothing returns forces one along which nothing does: K² has more zeros than K.
+    """Whether a displacement to which nothing returns forces one along which nothing does: of M⁻¹K, not symmetric.
 
-    Such a motion grows as t², as that of a blade that is turned on an incline.
+    Such a motion grows as t², as that of a blade that is turned on an incline: what K takes to zero is then among what
+    it leads to, and has no part along what is zero from the left.
     """
     units = balanced_units(stiffness[None])[0]
-    once = stiffness * units / units[:, None]
-    zeros = [
-        int((sizes <= _LEVEL * sizes[0]).sum())
-        if (sizes := np.linalg.svd(power, compute_uv=False))[0] > 0.0
-        else len(once)
-        for power in (once, once @ once)
-    ]
-    return zeros[1] > zeros[0]
+    left, sizes, right = np.linalg.svd(stiffness * units / units[:, None])
+    level = sizes <= _LEVEL * sizes[0]
+    if not level.any():
+        return False
+    along = np.linalg.svd(left[:, level].T @ right[level].T, compute_uv=False)
+    return bool(along[-1] <= _APART)
 
 
 def _lowest(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> float | None:

@@ -2,21 +2,42 @@
 
 use super::leg::Leg;
 use super::member::Member;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::Ticker;
 use crate::scene::events::{Event, Focus, What, dot};
+use crate::scene::integrate::Ending;
 use crate::scene::run::resolved::energy_of;
 use crate::scene::{Scene, request::Request};
 
 impl Member {
-    /// The values of those events that a collision may change at once; none of the others.
-    pub(super) fn values(
-        &self,
+    /// Settles a contact, and takes in the events whose sign that has changed; whether the run goes on.
+    pub(super) fn collide_and_look(
+        &mut self,
         whole: &Scene,
         request: &Request,
+        pair: (usize, usize),
         ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Option<f64>>> {
+    ) -> Result<bool> {
+        let before = self.values(whole, request, ticker);
+        let goes_on = self.collide(Some(pair));
+        match before.and_then(|before| Ok([before, self.values(whole, request, ticker)?])) {
+            Ok([before, after]) if !self.jump(request, &before, &after) && goes_on => {
+                self.outcome.ending = Ending::Stopped;
+                Ok(false)
+            }
+            Ok(_) => Ok(goes_on),
+            // Nothing of what was run is lost for a function that fails.
+            Err(Error::Interrupted) => {
+                self.outcome.ending = Ending::Interrupted;
+                Ok(false)
+            }
+            Err(other) => Err(other),
+        }
+    }
+
+    /// The values of those events that a collision may change at once; none of the others.
+    fn values(&self, whole: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Vec<Option<f64>>> {
         if request.events.is_empty() {
             return Ok(Vec::new());
         }
@@ -28,7 +49,7 @@ impl Member {
     }
 
     /// Takes in the events whose sign a collision has changed; whether the run goes on.
-    pub(super) fn jump(&mut self, request: &Request, before: &[Option<f64>], after: &[Option<f64>]) -> bool {
+    fn jump(&mut self, request: &Request, before: &[Option<f64>], after: &[Option<f64>]) -> bool {
         let mut goes_on = true;
         for (which, event) in request.events.iter().enumerate() {
             let (Some(Some(before)), Some(Some(after))) = (before.get(which), after.get(which)) else {
@@ -36,7 +57,8 @@ impl Member {
             };
             // Upwards along a run backwards is downwards in time.
             let counts = event.direction * self.bodies.direction * after.signum() >= 0.0;
-            if !(before * after < 0.0 && counts) {
+            let changes = (before < &0.0 && after > &0.0) || (before > &0.0 && after < &0.0);
+            if !(changes && counts) {
                 continue;
             }
             let states = self.bodies.position.iter().zip(&self.bodies.velocity);

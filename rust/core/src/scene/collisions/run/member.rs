@@ -96,13 +96,7 @@ impl Member {
             let Some(pair) = member.leg(scene, request, (end, Some(&touching)), ticker)? else {
                 return Ok(member);
             };
-            let before = member.values(scene, request, ticker)?;
-            let goes_on = member.collide(Some(pair));
-            let after = member.values(scene, request, ticker)?;
-            if !member.jump(request, &before, &after) && goes_on {
-                member.outcome.ending = Ending::Stopped;
-                return Ok(member);
-            }
+            let goes_on = member.collide_and_look(scene, request, pair, ticker)?;
             // Who has nothing more to record is where the collision has put it.
             if !goes_on || member.outcome.rows == end {
                 return Ok(member);
@@ -213,7 +207,7 @@ impl Member {
     }
 
     /// Settles a contact, and all others at the same time; whether the run goes on.
-    fn collide(&mut self, pair: Option<(usize, usize)>) -> bool {
+    pub(super) fn collide(&mut self, pair: Option<(usize, usize)>) -> bool {
         // What was held at a node is of before.
         self.kept = None;
         self.from = 0;
