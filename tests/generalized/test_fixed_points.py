@@ -145,3 +145,13 @@ def test_a_portrait_of_no_width_or_of_a_driven_system_is_refused() -> None:
     driven = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + q[0] * np.cos(t), ["x"])
     with pytest.raises(vv.InvalidInput, match=r"^position: a portrait needs energy to be conserved"):
         driven.phase_portrait((-1.0, 1.0), (-1.0, 1.0))
+
+
+def test_starts_far_away_change_nothing_of_others() -> None:
+    """Steps were as long as the farthest start, or the largest momentum, of all."""
+    well = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2 + np.exp(q[0]) - q[0], ["x"])
+    for near in ([[-8.0, 0.0]], [[-8.0, 0.0], [1e3, 0.0]], [[-8.0, 0.0], [500.0, 0.0]]):
+        (found,) = well.equilibria(near=near)
+        np.testing.assert_allclose(found.position, [0.0], rtol=0.0, atol=1e-15)
+    (hanging,) = vv.systems.pendulum().hamiltonian().equilibria(near=[[1.5, 300.0]])
+    np.testing.assert_allclose(hanging.position, [0.0], rtol=0.0, atol=1e-12)

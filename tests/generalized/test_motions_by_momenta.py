@@ -106,6 +106,20 @@ def test_equilibria_in_any_units(m):
     np.testing.assert_allclose(found.frequencies, turning.linearize([0.0, 0.0]).frequencies, rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.parametrize("g", [0.1, 1.0, 9.81, 50.0])
+def test_a_hill_in_a_turning_frame_has_eigenvalues(g):
+    """±√g ± iΩ lie so symmetrically that the iteration that finds them may go round in a circle."""
+    for turn in [*np.logspace(-9, 0, 37), 0.3]:
+
+        def lagrangian(q, v, t, turn=turn):
+            return ((v[0] - turn * q[1]) ** 2 + (v[1] + turn * q[0]) ** 2 + g * (q[0] ** 2 + q[1] ** 2)) / 2
+
+        hill = vv.Lagrangian(lagrangian, ["x", "y"], position=[0.0, 0.0])
+        small = hill.linearize()
+        assert not small.stable
+        np.testing.assert_allclose(np.abs(small.eigenvalues.real), np.sqrt(g), rtol=1e-7, atol=0.0)
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e6, 1e12])
 def test_frequencies_do_not_hang_on_units(unit):
     """Rounding of the largest entries was that of all: 1e-5 of a frequency, and growth that is none."""

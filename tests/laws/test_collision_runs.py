@@ -324,3 +324,10 @@ def test_what_rests_on_a_plane_does_not_pass_it(method: vv.typing.MethodName) ->
     )
     apart = vv.events.distance(0, 1, below=2.0, direction=0)
     assert len(touching.run(3.0, collisions="bounce", events=[apart]).events) == 0
+
+
+def test_what_creeps_through_a_plane_passes_it() -> None:
+    """In each step by less than places are rounded by: 1e-12 a step, a million away."""
+    creeping = vv.Scene(vv.Particles([1.0], [[1e6 - 1e-9, 0, 0]], [[1e-12, 0, 0]]), vv.UniformField([0, 0, -1e-3]))
+    out = creeping.run(1e4, method="rk4", dt=1.0, events=[vv.events.plane([1e6, 0, 0], [1.0, 0, 0], body=0)])
+    assert len(out.events) == 1

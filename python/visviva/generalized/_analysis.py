@@ -29,6 +29,7 @@ __all__ = [
     "PoincareSection",
     "along",
     "eigenmodes",
+    "free_matrices",
     "linearization",
     "linearization_of",
     "of_matrices",
@@ -121,16 +122,7 @@ class Linearization(Shown):
         """Whether no small motion grows, as the linear equations tell; one that neither grows nor returns counts."""
         from visviva.generalized._stability import is_stable
 
-        return is_stable(*self._free_matrices())
-
-    def _free_matrices(
-        self,
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Give M, C and K along the free directions, and the rounding of K."""
-        if self.tangent is None:
-            return self.mass, self.damping, self.stiffness, self.rounding
-        mass, damping, stiffness = (along(self.tangent, each) for each in (self.mass, self.damping, self.stiffness))
-        return mass, damping, stiffness, along(np.abs(self.tangent), self.rounding)
+        return is_stable(*free_matrices(self))
 
     def at(self, t: ArrayLike, displacement: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Small motions at any time, exactly.
@@ -354,6 +346,14 @@ def along(tangent: NDArray[np.float64] | None, matrix: NDArray[np.float64]) -> N
     """Give a matrix along free directions."""
     reduced: NDArray[np.float64] = matrix if tangent is None else tangent.T @ matrix @ tangent
     return reduced
+
+
+def free_matrices(
+    small: Linearization,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Give M, C and K along the free directions, and the rounding of K."""
+    mass, damping, stiffness = (along(small.tangent, each) for each in (small.mass, small.damping, small.stiffness))
+    return mass, damping, stiffness, along(None if small.tangent is None else np.abs(small.tangent), small.rounding)
 
 
 def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> dict[str, Any]:

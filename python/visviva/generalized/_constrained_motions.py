@@ -185,7 +185,10 @@ class Constrained:
         """Give the nearest places on the holonomic constraints, or nearly so."""
         for _ in range(_TO_CONSTRAINTS if self.holonomic else 0):
             told = self.told(places)
-            places = places - _solved(told.directions[:, : self.holonomic], told.residuals, columns_alike=False)
+            moved = _solved(told.directions[:, : self.holonomic], told.residuals, columns_alike=False)
+            places = places - moved
+            if not (np.abs(moved) > _FOUND * np.abs(places).max(axis=1, keepdims=True)).any():
+                break
         return places
 
     def _sizes(self, place: NDArray[np.float64], unit: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -288,7 +291,11 @@ class Constrained:
             for _ in range(_TO_CONSTRAINTS):
                 told = self.told(places)
                 steep = told.directions[:, : self.holonomic] @ across
-                places = places - _solved(steep, told.residuals) @ across.T
+                moved = _solved(steep, told.residuals) @ across.T
+                places = places - moved
+                # Next to the place what is left of a constraint may be as small as the distance.
+                if not moved.any():
+                    break
             told = self.told(places)
             directions = told.directions[:, : self.holonomic]
             steep = np.linalg.pinv(_finite(directions @ across))

@@ -15,7 +15,7 @@ from visviva._arrays import float_array
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._analysis import linearization, linearization_of
+from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
@@ -200,7 +200,7 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
             refused.append(refusal)
             continue
         apart.append((place, SAME * np.abs(place).max(initial=0.0) + _ONE * balance.left_open))
-        leaves, free = balance.drifts, small._free_matrices()
+        leaves, free = balance.drifts, free_matrices(small)
         about = level_and_held(*free)
         if about is not None and small.tangent is not None and not rolling:
             energy = constrained.along(place, small.tangent)

@@ -33,7 +33,7 @@ __all__ = ["fixed_points", "rates_and_slopes", "rounding_of_slopes", "slopes_at"
 _STEPS = 240
 #: Singular values below this part of the largest are none.
 _SINGULAR = 1e-13
-#: A step is as long as the largest coordinate of a turn at most, or of the start.
+#: A step is as long as the largest coordinate of a turn at most, or of its own start.
 _LONGEST = np.pi
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
@@ -105,7 +105,7 @@ def _scales(system: Hamiltonian, states: NDArray[np.float64]) -> _Scales:
 def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) -> NDArray[np.float64]:
     """Where Newton's method ends from each state, if it comes to an equilibrium."""
     step = np.full(states.shape, np.inf)
-    longest = max(_LONGEST, float(np.abs(states).max(initial=0.0)))
+    longest = np.fmax(_LONGEST, np.abs(states[:, : states.shape[1] // 2]).max(axis=1, initial=0.0, keepdims=True))
     at_kinks = [states[:0]]
     for _ in range(_STEPS):
         rates, slopes = rates_and_slopes(system, states)
@@ -113,6 +113,7 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) 
         at_kinks.append(states[(rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))])
         finite = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
         states, step, rates, slopes = states[finite], step[finite], rates[finite], slopes[finite]
+        longest = longest[finite]
         if not len(states):
             return np.concatenate(at_kinks)
         slopes = slopes * scales.units

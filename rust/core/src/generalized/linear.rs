@@ -26,6 +26,10 @@ const UNBALANCED: f64 = 1e-10;
 const SINGULAR: f64 = 1e-10;
 /// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
 const ROTATIONS: usize = 100_000;
+/// Mirrors in which eigenvalues are looked for.
+const TURNS: usize = 5;
+/// Multiples of it are spread evenly between whole numbers.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Rounds of balancing a matrix: a few are usual.
 const SWEEPS: usize = 100;
 
@@ -262,7 +266,10 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
         return Err(outside());
     }
     balance(&mut first_order);
-    let schur = Schur::try_new(first_order, f64::EPSILON, ROTATIONS).ok_or_else(outside)?;
+    let turned =
+        (0..TURNS).map(|turn| if turn == 0 { first_order.clone() } else { reflected(&first_order, turn) });
+    let mut found = turned.filter_map(|matrix| Schur::try_new(matrix, f64::EPSILON, ROTATIONS));
+    let schur = found.next().ok_or_else(outside)?;
     let eigenvalues = schur.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
     let scale = stiffness.amax();
     let is_symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * scale;
@@ -308,6 +315,15 @@ fn balance(matrix: &mut DMatrix<f64>) {
             return;
         }
     }
+}
+
+/// The same matrix seen in a mirror. Where eigenvalues lie as symmetrically as ±a ± ib, the iteration may go round in a circle;
+/// from elsewhere it does not.
+fn reflected(matrix: &DMatrix<f64>, turn: usize) -> DMatrix<f64> {
+    let n = matrix.nrows();
+    let across = DVector::from_fn(n, |i, _| 0.5 + (((i + 1) * turn) as f64 * GOLDEN).fract());
+    let mirror = DMatrix::identity(n, n) - &across * across.transpose() * (2.0 / across.norm_squared());
+    &mirror * matrix * &mirror
 }
 
 /// x · 2^power, whose parts may be beyond all numbers.
