@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -356,24 +356,40 @@ def free_matrices(
     return mass, damping, stiffness, along(None if small.tangent is None else np.abs(small.tangent), small.rounding)
 
 
-def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> dict[str, Any]:
-    """Eigenvalues of M, C and K along free directions, and squares and modes where these are real."""
-    return _core.eigenmodes(*(along(tangent, matrix) for matrix in (found.mass, found.damping, found.stiffness)))
+class Eigenmodes(NamedTuple):
+    """Of M, C and K along free directions: λ (2d), and squares (d) and modes (d, d) where these are real."""
+
+    eigenvalues: NDArray[np.complex128]
+    squares: NDArray[np.float64] | None
+    modes: NDArray[np.float64] | None
+
+
+def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> Eigenmodes:
+    """Give them, or refuse what has no derivatives."""
+    mass, damping, stiffness = (along(tangent, matrix) for matrix in (found.mass, found.damping, found.stiffness))
+    squares, modes = _core.eigenmodes(mass, damping, stiffness) or (None, None)
+    n = len(mass)
+    first_order = np.zeros((2 * n, 2 * n))
+    first_order[:n, n:] = np.eye(n)
+    with np.errstate(all="ignore"):
+        first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    if not np.isfinite(first_order).all():
+        raise InvalidInput("at", "eigenvalues of small motions leave the range of numbers; take other units")
+    # LAPACK takes units for the numbers of a state first, so that rounding of the largest is not that of all.
+    return Eigenmodes(np.linalg.eigvals(first_order).astype(np.complex128), squares, modes)
 
 
 def of_matrices(
     place: NDArray[np.float64],
     known: tuple[Matrices, NDArray[np.float64], NDArray[np.float64] | None],
-    small: dict[str, Any],
+    small: Eigenmodes,
     coordinates: tuple[str, ...],
 ) -> Linearization:
     """Small motions of matrices at a place, known to a rounding of K, along free directions."""
     found, off_by, tangent = known
-    squares: NDArray[np.float64] | None = None
-    modes: NDArray[np.float64] | None = None
-    if small["symmetric"] is not None:
-        squares, modes = small["symmetric"]
-        modes = modes if tangent is None else modes @ tangent.T
+    squares, modes = small.squares, small.modes
+    if modes is not None and tangent is not None:
+        modes = modes @ tangent.T
     if squares is not None and modes is not None:
         # Of a level direction rounding makes a square of its own size, and a frequency of its root.
         least = ((np.abs(modes) @ off_by) * np.abs(modes)).sum(axis=1)
@@ -383,7 +399,7 @@ def of_matrices(
         found.mass,
         found.damping,
         found.stiffness,
-        np.array([complex(*value) for value in small["eigenvalues"]]),
+        small.eigenvalues,
         modes,
         squares,
         off_by,

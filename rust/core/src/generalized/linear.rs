@@ -7,7 +7,7 @@
 use super::model::{Kind, Model};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Graph, Id, Machine, Node};
-use nalgebra::{DMatrix, DVector, Schur, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -26,12 +26,6 @@ const UNBALANCED: f64 = 1e-10;
 const SINGULAR: f64 = 1e-10;
 /// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
 const ROTATIONS: usize = 100_000;
-/// Mirrors in which eigenvalues are looked for.
-const TURNS: usize = 5;
-/// Multiples of it are spread evenly between whole numbers.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Rounds of balancing a matrix: a few are usual.
-const SWEEPS: usize = 100;
 
 /// Codes of forces at rest and of the matrices of small motions.
 #[derive(Clone, Debug)]
@@ -237,40 +231,20 @@ fn newton_step(at: &Matrices, units: &[f64]) -> Option<Step> {
     Some(Step { correction: given(&step), remains, stiffest })
 }
 
-/// The eigenvalues of small motions as (real, imaginary), and, where they are those of a symmetric pair M, K with M positive
-/// definite and no C, squared frequencies, ascending, with modes (row by row) that are orthonormal in M.
-pub struct Modes {
-    /// Of exp(λ t).
-    pub eigenvalues: Vec<(f64, f64)>,
-    /// Squared frequencies and modes.
-    pub symmetric: Option<(Vec<f64>, Vec<f64>)>,
-}
+/// Squared frequencies, ascending, with modes, row by row, which are orthonormal in M.
+pub type Modes = (Vec<f64>, Vec<f64>);
 
-/// Small motions of these matrices.
+/// Those of small motions, where these matrices are a symmetric pair M, K with M positive definite and no C.
 ///
 /// # Errors
-/// A singular mass matrix; matrices that are not numbers, of which there are no eigenvalues, and no end of looking for them.
-pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
+/// A singular mass matrix; matrices that are not numbers.
+pub fn modes(matrices: &Matrices, n: usize) -> Result<Option<Modes>> {
     finite(matrices, n)?;
     let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness]
         .map(|rows| DMatrix::from_row_slice(n, n, rows));
-    let singular = || Error::invalid("position", "the mass matrix is singular there");
-    let inverse = mass.clone().try_inverse().ok_or_else(singular)?;
-    let mut first_order = DMatrix::zeros(2 * n, 2 * n);
-    first_order.view_mut((0, n), (n, n)).fill_with_identity();
-    first_order.view_mut((n, 0), (n, n)).copy_from(&(-(&inverse * &stiffness)));
-    first_order.view_mut((n, n), (n, n)).copy_from(&(-(&inverse * &damping)));
-    let outside =
-        || Error::invalid("at", "eigenvalues of small motions leave the range of numbers; take other units");
-    if first_order.iter().any(|x| !x.is_finite()) {
-        return Err(outside());
+    if mass.clone().try_inverse().is_none() {
+        return Err(Error::invalid("position", "the mass matrix is singular there"));
     }
-    balance(&mut first_order);
-    let turned =
-        (0..TURNS).map(|turn| if turn == 0 { first_order.clone() } else { reflected(&first_order, turn) });
-    let mut found = turned.filter_map(|matrix| Schur::try_new(matrix, f64::EPSILON, ROTATIONS));
-    let schur = found.next().ok_or_else(outside)?;
-    let eigenvalues = schur.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
     let scale = stiffness.amax();
     let is_symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * scale;
     let symmetric = (damping.amax() == 0.0 && is_symmetric)
@@ -292,44 +266,7 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
                 order.iter().flat_map(|&k| vectors.column(k).iter().copied().collect::<Vec<f64>>()).collect();
             Some((squares, rows))
         });
-    Ok(Modes { eigenvalues, symmetric })
-}
-
-/// Takes units for each number of a state in which rows and columns are alike, so that rounding of the largest entries is not
-/// that of all: powers of two, which round nothing (B. N. Parlett & C. Reinsch, Numer. Math. 13 (1969) 293).
-fn balance(matrix: &mut DMatrix<f64>) {
-    let n = matrix.nrows();
-    for _ in 0..SWEEPS {
-        let mut balanced = true;
-        for i in 0..n {
-            let beside = |of: &dyn Fn(usize) -> f64| (0..n).filter(|&j| j != i).map(of).fold(0.0, f64::max);
-            let (row, column) = (beside(&|j| matrix[(i, j)].abs()), beside(&|j| matrix[(j, i)].abs()));
-            let factor = (0.5 * (row.log2() - column.log2())).round();
-            if row > 0.0 && column > 0.0 && factor != 0.0 {
-                balanced = false;
-                matrix.column_mut(i).iter_mut().for_each(|x| *x = scaled(*x, factor));
-                matrix.row_mut(i).iter_mut().for_each(|x| *x = scaled(*x, -factor));
-            }
-        }
-        if balanced {
-            return;
-        }
-    }
-}
-
-/// The same matrix seen in a mirror. Where eigenvalues lie as symmetrically as ±a ± ib, the iteration may go round in a circle;
-/// from elsewhere it does not.
-fn reflected(matrix: &DMatrix<f64>, turn: usize) -> DMatrix<f64> {
-    let n = matrix.nrows();
-    let across = DVector::from_fn(n, |i, _| 0.5 + (((i + 1) * turn) as f64 * GOLDEN).fract());
-    let mirror = DMatrix::identity(n, n) - &across * across.transpose() * (2.0 / across.norm_squared());
-    &mirror * matrix * &mirror
-}
-
-/// x · 2^power, whose parts may be beyond all numbers.
-fn scaled(x: f64, power: f64) -> f64 {
-    let half = (0.5 * power).trunc();
-    x * half.exp2() * (power - half).exp2()
+    Ok(symmetric)
 }
 
 /// Whether all entries are numbers.

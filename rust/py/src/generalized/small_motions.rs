@@ -4,7 +4,6 @@ use super::{Array, Column};
 use crate::arrays::{copied, moved};
 use crate::gate::compute;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::sync::OnceLock;
 use visviva_core::Result;
 use visviva_core::generalized::Model;
@@ -77,27 +76,20 @@ pub(super) fn matrices<'py>(
     ])
 }
 
-/// Eigenvalues, squared frequencies and modes of M, C and K (n, n).
+/// Squared frequencies (n) and modes (n, n) of M, C and K (n, n); `None` where these are no symmetric pair, or damped.
 #[pyfunction]
 pub(crate) fn eigenmodes<'py>(
     py: Python<'py>,
     mass: Array<'py>,
     damping: Array<'py>,
     stiffness: Array<'py>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Option<(Column<'py>, Column<'py>)>> {
     let (mass, [n, _]) = copied("mass", &mass, [None, None])?;
     let (damping, _) = copied("damping", &damping, [Some(n), Some(n)])?;
     let (stiffness, _) = copied("stiffness", &stiffness, [Some(n), Some(n)])?;
     let matrices = Matrices { mass, damping, stiffness, forces: vec![] };
-    let found = compute(py, 0, None, |_| modes(&matrices, n))?.whole(py)?;
-    let result = PyDict::new(py);
-    result.set_item("eigenvalues", found.eigenvalues)?;
-    result.set_item(
-        "symmetric",
-        match found.symmetric {
-            None => None,
-            Some((squares, modes)) => Some((moved(py, squares, &[n])?, moved(py, modes, &[n, n])?)),
-        },
-    )?;
-    Ok(result)
+    match compute(py, 0, None, |_| modes(&matrices, n))?.whole(py)? {
+        None => Ok(None),
+        Some((squares, modes)) => Ok(Some((moved(py, squares, &[n])?, moved(py, modes, &[n, n])?))),
+    }
 }
