@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from rolling import MASS, STIFFNESS, cylinder_on_a_spring
 
 import visviva as vv
 
@@ -140,15 +141,9 @@ def test_small_motions_are_those_of_a_run():
 
 
 def test_a_cylinder_rolls_as_if_it_were_heavier():
-    m, radius, k = 2.0, 0.5, 3.0
-    rolling = vv.Lagrangian(
-        lambda q, v, t: m * v[0] ** 2 / 2 + m * radius**2 / 2 * v[1] ** 2 / 2 - k * q[0] ** 2 / 2,
-        ["x", "phi"],
-        nonholonomic=[lambda q, v, t: v[0] - radius * v[1]],
-        position=[0.0, 0.0],
-    )
+    rolling = cylinder_on_a_spring()
     small = rolling.normal_modes()
-    np.testing.assert_allclose(small.frequencies, [np.sqrt(k / (1.5 * m))], rtol=1e-14, atol=0.0)
+    np.testing.assert_allclose(small.frequencies, [np.sqrt(STIFFNESS / (1.5 * MASS))], rtol=1e-14, atol=0.0)
     np.testing.assert_allclose(small.modes, [[3.0**-0.5, 2.0 * 3.0**-0.5]], rtol=1e-14, atol=0.0)
     with pytest.raises(vv.InvalidInput, match="along the constraints"):
         small.at(0.3, [0.1, 0.1], [0.0, 0.0])

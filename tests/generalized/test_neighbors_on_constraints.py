@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from rolling import MASS, RADIUS, STIFFNESS, cylinder_on_a_spring
 
 import visviva as vv
 
@@ -129,15 +130,8 @@ def test_at_the_top_exponents_are_the_eigenvalues():
 
 def test_what_rolls_has_neighbors_that_roll():
     """x is tied to φ by a constraint of velocities: of four numbers of a state three are free."""
-    k, m, radius = 3.0, 2.0, 0.5
-    rolling = vv.Lagrangian(
-        lambda q, v, t: m * v[0] ** 2 / 2 + m * radius**2 / 2 * v[1] ** 2 / 2 - k * q[0] ** 2 / 2,
-        ["x", "phi"],
-        nonholonomic=[lambda q, v, t: v[0] - radius * v[1]],
-        position=[0.3, 0.1],
-        velocity=[0.0, 0.0],
-    )
-    t, omega = 1.7, np.sqrt(k / (1.5 * m))
+    rolling, radius = cylinder_on_a_spring(0.3, 0.1), RADIUS
+    t, omega = 1.7, np.sqrt(STIFFNESS / (1.5 * MASS))
     found = rolling.flow_jacobian(t)
     c, s = np.cos(omega * t), np.sin(omega * t)
     np.testing.assert_allclose(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from visviva._keywords import unknown_name
 from visviva.generalized._accessory import AccessoryProblem
 from visviva.generalized._action import PathIntegral
-from visviva.generalized._analysis import Linearization, PoincareSection
+from visviva.generalized._analysis import Linearization
 from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._discrete import DiscreteAction
 from visviva.generalized._ensemble import GeneralizedEnsemble
@@ -26,6 +26,7 @@ from visviva.generalized._legendre import LegendreTransform
 from visviva.generalized._nodes import Expression
 from visviva.generalized._noether import NoetherSymmetry
 from visviva.generalized._plan import GeneralizedPlan
+from visviva.generalized._section import PoincareSection
 from visviva.generalized._symbolic import coordinate, time
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._trajectory import GeneralizedTrajectory

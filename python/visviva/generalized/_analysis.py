@@ -1,4 +1,4 @@
-"""What a system is near a state, over a period, and through a section: the results of its methods."""
+"""Small motions about a place: what the linear equations tell of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
-from visviva._html import Record, Sheet, Shown, as_text, briefly
+from visviva._html import Sheet, Shown, as_text, briefly
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._constrained_motions import BALANCED, Constrained
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Linearization",
-    "PoincareSection",
     "along",
     "eigenmodes",
     "free_matrices",
@@ -224,77 +223,6 @@ class Linearization(Shown):
         ax.locator_params(axis="x", integer=True)
         if len(numbers) <= LEGEND:
             legend_beside(ax)
-        return ax
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class PoincareSection(Record):
-    """Where a motion passes through a section.
-
-    Units: those of the system.
-
-    Attributes
-    ----------
-    t : ndarray, shape (C,)
-    position, momentum : ndarray, shape (C, n)
-    coordinates : tuple of str
-
-    References
-    ----------
-    M. Hénon, Physica D 5 (1982) 412.
-
-    Examples
-    --------
-    >>> import sympy as sp, visviva as vv
-    >>> section = vv.systems.henon_heiles().poincare("x", t=100.0)
-    >>> section.position.shape[1], float(abs(section.position[:, 0]).max()) < 1e-13
-    (2, True)
-    """
-
-    t: NDArray[np.float64]
-    position: NDArray[np.float64]
-    momentum: NDArray[np.float64]
-    coordinates: tuple[str, ...]
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def plot(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
-        """Draw the points of a coordinate and its momentum.
-
-        Parameters
-        ----------
-        name : str, optional
-            The coordinate; the last if not given.
-        ax : matplotlib.axes.Axes, optional
-            Where; a new one if not given.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Raises
-        ------
-        InvalidInput
-            For a coordinate that is not there, what are no axes, or if matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.henon_heiles().poincare("x", t=50.0).plot("y").get_xlabel()
-        'y'
-        """
-        from visviva.plot import axes_or_new
-
-        name = self.coordinates[-1] if name is None else name
-        if not isinstance(name, str) or name not in self.coordinates:
-            raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.coordinates)}")
-        index = self.coordinates.index(name)
-        ax = axes_or_new(ax)
-        ax.plot(self.position[:, index], self.momentum[:, index], ".", markersize=2)
-        ax.set_xlabel(name)
-        ax.set_ylabel(f"momentum of {name}")
         return ax
 
 

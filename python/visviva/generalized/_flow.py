@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._analysis import PoincareSection
     from visviva.generalized._legendre import LegendreTransform
     from visviva.generalized._nodes import Node
+    from visviva.generalized._section import PoincareSection
     from visviva.integrators import Method
     from visviva.typing import EventDirection, Formula, GeneralizedMethodName
 
@@ -76,7 +76,7 @@ class Flow:
         >>> bool(abs(points.position[:, 0]).max() < 1e-13)
         True
         """
-        from visviva.generalized._analysis import PoincareSection
+        from visviva.generalized._section import PoincareSection
 
         way = checked_direction(direction)
         if isinstance(section, str):
