@@ -7,6 +7,7 @@ import pytest
 from rolling import MASS, RADIUS, STIFFNESS, cylinder_on_a_spring
 
 import visviva as vv
+from visviva.generalized._neighbors import flow_jacobian
 
 G = 9.81
 
@@ -58,6 +59,17 @@ def test_the_derivatives_of_a_flow_are_those_of_the_angle(angle, rate, t):
     # What both runs lose in so many turns, at 1e-12 a step.
     np.testing.assert_allclose(found @ first, expected, rtol=0.0, atol=1e-10 * max(1.0, np.abs(expected).max()))
     assert np.linalg.matrix_rank(found, tol=1e-9) == 2
+
+
+@pytest.mark.parametrize("t", [20.0, 300.0])
+def test_rounding_across_constraints_is_taken_out(t):
+    """Of the state, which would leave the circle by 1e-12 and more, and of its neighbors."""
+    system = in_a_plane(2.0, 0.0)
+    (x, y, vx, vy), found = flow_jacobian(system, t)
+    assert abs(x**2 + y**2 - 1.0) < 1e-15
+    assert abs(x * vx + y * vy) < 1e-14
+    across = np.array([[x, y, 0.0, 0.0], [vx, vy, x, y]])
+    np.testing.assert_allclose(across @ found, 0.0, rtol=0.0, atol=1e-14 * np.abs(found).max())
 
 
 @pytest.mark.parametrize(("length", "rate"), [(1e10, 1e-12), (1e-10, 1e16)])

@@ -34,8 +34,6 @@ _TO_BALANCE = 60
 #: The least part that Newton's steps leave of the way to a zero that is not simple, and how often it is looked for.
 _OF_A_DOUBLE_ZERO = 0.4
 _SOMETIMES = 4
-#: Numbers below this part of those that are looked at are what rounding leaves of 0.
-_ROUNDED = 1e-14
 #: Places so many times farther than what is looked at are none that were looked for.
 _FAR = 1e6
 #: A step that is below this part of the place is round-off.
@@ -175,7 +173,6 @@ class Constrained:
             places, reactions, before = places[going], reactions[going], np.where(linear, np.nan, long)[going]
         # What does not come to rest may be a place that forces tell to some of its digits only.
         done += list(places)
-        done = [np.where(np.abs(place) < _ROUNDED * scale, 0.0, place) for place in done]
         # Far away, where forces have become zero, nothing is an equilibrium.
         near = [place for place in done if np.abs(place).max(initial=0.0) <= _FAR * largest]
         balanced = [place for place in near if self.off_balance(place) is None]
