@@ -331,3 +331,23 @@ def test_what_creeps_through_a_plane_passes_it() -> None:
     creeping = vv.Scene(vv.Particles([1.0], [[1e6 - 1e-9, 0, 0]], [[1e-12, 0, 0]]), vv.UniformField([0, 0, -1e-3]))
     out = creeping.run(1e4, method="rk4", dt=1.0, events=[vv.events.plane([1e6, 0, 0], [1.0, 0, 0], body=0)])
     assert len(out.events) == 1
+
+
+def test_jumps_of_copies_are_those_that_each_has_alone() -> None:
+    """Twelve balls with masses of their own in each of ten copies, by one thread and three."""
+    rng = np.random.default_rng(3)
+    places = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0), [0.0]), -1).reshape(-1, 3)
+    speeds = rng.normal(size=(10, 12, 3)) * [1.0, 1.0, 0.0]
+    gas = vv.Scene(vv.Particles(np.ones(12), places, speeds[0], radius=0.3), vv.Harmonic(1.0, (1.5, 1.0, 0.0)))
+    copies = gas.ensemble(mass=rng.uniform(0.5, 2.0, (10, 12)), velocity=speeds)
+    events = [vv.events.energy(0.8 * float(gas.invariants().energy)), vv.events.apsis(0, 1)]
+    asked: dict[str, Any] = {"collisions": "bounce", "restitution": 0.7, "events": events, "method": "verner98"}
+    by_one, by_three = (copies.run(2.0, threads=threads, **asked) for threads in (1, 3))
+    assert np.isin(by_one.events.t, by_one.collisions.t).sum() > 5
+    for name in ("t", "which", "position", "velocity"):
+        np.testing.assert_array_equal(getattr(by_one.events, name), getattr(by_three.events, name))
+    for copy in (0, 7):
+        alone = copies[copy].run(2.0, **asked)
+        own = by_one.events.member == copy
+        np.testing.assert_array_equal(by_one.events.t[own], alone.events.t)
+        np.testing.assert_array_equal(by_one.events.velocity[own], alone.events.velocity)
