@@ -17,6 +17,8 @@ import visviva as vv
 if TYPE_CHECKING:
     from pathlib import Path
 
+EPSILON = float(np.finfo(float).eps)
+
 
 def test_what_mergers_leave_goes_on() -> None:
     random = np.random.default_rng(7)
@@ -351,3 +353,22 @@ def test_jumps_of_copies_are_those_that_each_has_alone() -> None:
         own = by_one.events.member == copy
         np.testing.assert_array_equal(by_one.events.t[own], alone.events.t)
         np.testing.assert_array_equal(by_one.events.velocity[own], alone.events.velocity)
+
+
+@each_method
+@pytest.mark.parametrize("t0", [1e9, -1e9, 1e12])
+def test_far_from_the_time_zero_bounces_lose_nothing(method: str, t0: float) -> None:
+    """A time of 1e9 has no digits for the 1e-7 in which a ball comes as far as its own rounding a billion times over."""
+    places, speeds = [[-1.5, 0, 0], [0, 0, 0], [0.5, 0, 0], [1.5, 0, 0]], [[0, 0, 0], [1, 0, 0], [-0.7, 0, 0], [0, 0, 0]]
+    here = spheres([1e6, 1.0, 2.0, 1e6], places, speeds, 0.125, vv.UniformField((0, -0.5, 0)))
+    times = np.array([0.0, 2.5, 5.0, 9.0, 10.0])
+    there = vv.Scene(here.particles, *here.forces, t0=t0)
+    near, far = (
+        scene.run(scene.t0 + times, collisions="bounce", record=("position", "velocity", "energy"), **how(method))
+        for scene in (here, there)
+    )
+    assert len(near.collisions) == len(far.collisions) > 8
+    # A dozen bounces, each of which takes the rounding of the one before some times over.
+    for name in ("position", "velocity", "energy"):
+        assert np.allclose(getattr(far, name), getattr(near, name), rtol=1e-11, atol=1e-11), name
+    assert np.allclose(far.collisions.t - t0, near.collisions.t, rtol=0.0, atol=abs(t0) * EPSILON)

@@ -275,6 +275,17 @@ def test_a_ball_with_a_mass_turns_the_walls_back() -> None:
     assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-9, abs=0.0)
 
 
+@pytest.mark.parametrize("digits", [1, 2, 3, 4])
+def test_bounces_count_the_digits_of_pi(digits: int) -> None:
+    """G. Galperin, Regul. Chaotic Dyn. 8 (2003) 375, eq. (1): a wall, a ball, and one of 100^n times its mass."""
+    wall, ball, heavy = 1e16, 1.0, 100.0**digits
+    places, speeds = [[0, 0, 0], [2, 0, 0], [4, 0, 0]], [[0, 0, 0], [0, 0, 0], [-1, 0, 0]]
+    out = spheres([wall, ball, heavy], places, speeds, 0.5).run(50.0, collisions="bounce")
+    assert len(out.collisions) == int(np.pi * 10**digits)
+    # The heavy one comes back; what the wall and the ball have of its energy is 2/M of it at most.
+    assert out.velocity[-1, 2, 0] == pytest.approx(1.0, rel=4.0 / heavy, abs=0.0)
+
+
 def test_a_fast_ball_between_slow_walls_bounces_on() -> None:
     """Thousands of bounces, each harder and sooner, tell of no end while the walls are far apart: they meet at 1.5."""
     places, speeds = [[-2.0, 0, 0], [2.0, 0, 0], [0.1, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [1e5, 0, 0]]

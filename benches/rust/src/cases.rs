@@ -56,6 +56,7 @@ pub fn cluster(particles: usize, solar: bool) -> Bodies {
         own_forces: None,
         radius: Vec::new(),
         t0: 0.0,
+        t0_rest: 0.0,
         rigid: None,
         continuation: None,
     }
@@ -110,6 +111,7 @@ pub fn figure_eights(copies: usize) -> Bodies {
         own_forces: None,
         radius: Vec::new(),
         t0: 0.0,
+        t0_rest: 0.0,
         rigid: None,
         continuation: None,
     }

@@ -53,10 +53,12 @@ impl Control {
         self.set_total(total);
     }
     /// Counts so many units of a whole.
+    #[inline]
     pub fn count(&self, done: u64) {
         let _: u64 = self.done.fetch_add(done, Ordering::Relaxed);
     }
     /// Says how much of a whole that is one piece of work is done.
+    #[inline]
     fn reach(&self, share: f64) {
         let total = self.total.load(Ordering::Relaxed);
         self.done.store((share * total as f64) as u64, Ordering::Relaxed);
@@ -281,6 +283,7 @@ pub fn thread_count(argument: Option<i64>) -> Result<usize> {
 static CORES: OnceLock<usize> = OnceLock::new();
 
 /// As [`thread_count`], with the variable given.
+#[inline]
 fn count(argument: Option<i64>, variable: Option<String>) -> Result<usize> {
     let (name, got, number) = match (argument, variable.as_deref().map(str::trim)) {
         (Some(number), _) => ("threads", number.to_string(), Some(number)),

@@ -106,6 +106,7 @@ impl DoubleDouble {
         Self::new(self.high * power_of_two, self.low * power_of_two)
     }
     /// The nearest integer (ties away from zero in the high part), exact up to 2^106.
+    #[inline]
     pub fn round(self) -> Self {
         let high = self.high.round();
         if high == self.high {
@@ -121,12 +122,14 @@ impl DoubleDouble {
         Self { high, low: 0.0 }
     }
     /// Whether both parts are finite.
+    #[inline]
     pub fn is_finite(self) -> bool {
         self.high.is_finite() && self.low.is_finite()
     }
 }
 
 impl From<f64> for DoubleDouble {
+    #[inline]
     fn from(value: f64) -> Self {
         Self::new(value, 0.0)
     }
@@ -176,16 +179,19 @@ impl Div for DoubleDouble {
     }
 }
 impl AddAssign for DoubleDouble {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 impl SubAssign for DoubleDouble {
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 impl PartialOrd for DoubleDouble {
+    #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         match self.high.partial_cmp(&other.high) {
             Some(Ordering::Equal) => self.low.partial_cmp(&other.low),
@@ -197,18 +203,23 @@ impl PartialOrd for DoubleDouble {
 impl Real for DoubleDouble {
     type Mask = bool;
 
+    #[inline]
     fn splat(value: f64) -> Self {
         Self::from(value)
     }
+    #[inline]
     fn from_double_double(value: DoubleDouble) -> Self {
         value
     }
+    #[inline]
     fn multiply_add(self, factor: Self, term: Self) -> Self {
         self * factor + term
     }
+    #[inline]
     fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
         term - self * factor
     }
+    #[inline]
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(self.high.sqrt());
@@ -221,24 +232,31 @@ impl Real for DoubleDouble {
         let remainder = self - refined * refined;
         refined + Self::from(remainder.high / (2.0 * root))
     }
+    #[inline]
     fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
     }
+    #[inline]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
+    #[inline]
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
+    #[inline]
     fn less(self, other: Self) -> bool {
         self < other
     }
+    #[inline]
     fn less_equal(self, other: Self) -> bool {
         self <= other
     }
+    #[inline]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
     }
+    #[inline]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
         (coefficient * self, Self::zero())
     }

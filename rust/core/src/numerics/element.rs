@@ -179,18 +179,21 @@ crate::tiered! {
 }
 
 impl Element for Lanes {
+    #[inline]
     fn pass<P: Pass<Self>>(pass: P) -> P::Output {
         run_tier(pass)
     }
 }
 
 impl Element for f64 {
+    #[inline]
     fn pass<P: Pass<Self>>(pass: P) -> P::Output {
         run_scalar_tier(pass)
     }
 }
 
 impl Element for DoubleDouble {
+    #[inline]
     fn pass<P: Pass<Self>>(pass: P) -> P::Output {
         pass.run::<Self>()
     }

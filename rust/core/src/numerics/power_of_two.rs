@@ -7,6 +7,7 @@ pub fn power_of_two(exponent: i32) -> f64 {
 }
 
 /// The k with 2^k ≤ |value| < 2^(k+1); 0 for 0, and for what is not finite.
+#[inline]
 pub fn exponent(value: f64) -> i32 {
     if value == 0.0 || !value.is_finite() {
         return 0;

@@ -37,6 +37,7 @@ impl Scaled {
     }
 
     /// Brings the value near one.
+    #[inline]
     fn normal(self) -> Self {
         let (high, low) = self.value.parts();
         if high == 0.0 || !high.is_finite() {
@@ -81,11 +82,13 @@ impl Scaled {
     }
 
     /// The product with a number.
+    #[inline]
     pub fn times(self, factor: f64) -> Self {
         self.by(Self::from(factor))
     }
 
     /// The product.
+    #[inline]
     pub fn by(self, factor: Self) -> Self {
         let (a, b) = (self.normal(), factor.normal());
         let (x, y) = (a.value.to_f64(), b.value.to_f64());
@@ -96,12 +99,14 @@ impl Scaled {
     }
 
     /// The quotient.
+    #[inline]
     pub fn over(self, divisor: Self) -> Self {
         let (a, b) = (self.normal(), divisor.normal());
         Self { value: a.value / b.value, exponent: a.exponent - b.exponent }
     }
 
     /// The square root; NaN of what is below zero.
+    #[inline]
     pub fn sqrt(self) -> Self {
         let Self { value, exponent } = self.normal();
         let odd = exponent.rem_euclid(2);
@@ -115,6 +120,7 @@ impl Scaled {
     }
 
     /// The value, where its range is that of numbers.
+    #[inline]
     pub fn to_double_double(self) -> DoubleDouble {
         let (high, low) = self.value.parts();
         DoubleDouble::new(scale(high, self.exponent), scale(low, self.exponent))
@@ -122,6 +128,7 @@ impl Scaled {
 }
 
 impl From<f64> for Scaled {
+    #[inline]
     fn from(value: f64) -> Self {
         Self { value: DoubleDouble::from(value), exponent: 0 }
     }

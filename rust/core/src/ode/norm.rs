@@ -135,7 +135,8 @@ impl<S: Controlled> Norm<S> {
                 stride: change.stride,
             });
         }
-        if self.together { largest.map(S::largest_lane) } else { largest }
+        let [first, second] = largest;
+        if self.together { [first.largest_lane(), second.largest_lane()] } else { largest }
     }
 
     /// The weighted mean of the vectors of a block.

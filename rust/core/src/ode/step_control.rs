@@ -91,6 +91,7 @@ impl<S: Real> Clock<S> {
     }
 
     /// Counts time anew in the lanes of the mask, up to `end`; the next step stays what it is.
+    #[inline]
     pub fn recount(&mut self, lanes: S::Mask, end: S) {
         self.elapsed = S::select(lanes, S::zero(), self.elapsed);
         self.error = S::select(lanes, S::zero(), self.error);
@@ -98,6 +99,7 @@ impl<S: Real> Clock<S> {
     }
 
     /// Makes the next step at most so long.
+    #[inline]
     pub(super) fn shorten(&mut self, longest: S) {
         let shorter = S::select(self.h.less(S::zero()), -longest, longest);
         self.h = S::select(longest.less(self.h.abs()), shorter, self.h);

@@ -175,7 +175,8 @@ impl Worker<'_> {
             }));
             return Ok(());
         }
-        motion.states(DoubleDouble::sum(t, -scene.t0), exact, ticker)?;
+        let elapsed = DoubleDouble::sum(t, -scene.t0) - DoubleDouble::from(scene.t0_rest);
+        motion.states(elapsed, exact, ticker)?;
         entries.extend(exact.iter().map(|(position, velocity)| Entry {
             position: position.map(DoubleDouble::high),
             velocity: velocity.map(DoubleDouble::high),

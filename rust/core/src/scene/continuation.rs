@@ -202,6 +202,7 @@ impl Continuation {
             forces: scene.forces.clone(),
             own_forces: scene.own_forces.clone(),
             t0: from.t0,
+            t0_rest: 0.0,
             continuation: None,
         })
     }

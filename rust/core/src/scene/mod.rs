@@ -21,6 +21,7 @@ pub mod unit;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::term::{Bodies, check_masses};
+use crate::numerics::double_double::DoubleDouble;
 pub(crate) use crate::numerics::points::distance;
 use crate::rigid::motion::bodies::RigidBodies;
 use crate::rigid::motion::loads::Load;
@@ -79,6 +80,8 @@ pub struct Scene {
     pub rigid: Option<RigidBodies>,
     /// The time of this state.
     pub t0: f64,
+    /// What that leaves out, if the state is that of an event: a time far from zero has no digits for it.
+    pub t0_rest: f64,
     /// How a run with fixed steps came to this state, if one did.
     pub continuation: Option<Continuation>,
 }
@@ -100,6 +103,18 @@ pub fn refuse_frames(forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
 }
 
 impl Scene {
+    /// How long after the start a time is.
+    #[inline]
+    pub fn elapsed(&self, t: f64) -> f64 {
+        // What is recorded at the time of an event is its state.
+        if t == self.t0 { 0.0 } else { (t - self.t0) - self.t0_rest }
+    }
+
+    /// The time so long after the start, and what its rounding leaves out.
+    pub fn time_after(&self, elapsed: f64) -> (f64, f64) {
+        DoubleDouble::sum(self.t0, elapsed + self.t0_rest).parts()
+    }
+
     /// The masses of a copy.
     pub fn masses(&self, copy: usize) -> &[f64] {
         &self.mass[copy * self.particles..(copy + 1) * self.particles]

@@ -149,6 +149,7 @@ impl Asked<'_> {
             radius,
             rigid,
             t0,
+            t0_rest: 0.0,
             continuation,
         };
         let atol = atol.map(|(position, velocity)| AbsoluteTolerances { position, velocity });
@@ -194,6 +195,7 @@ pub(super) fn snapshot(
         radius: Vec::new(),
         rigid: None,
         t0: 0.0,
+        t0_rest: 0.0,
         continuation: None,
     })
 }

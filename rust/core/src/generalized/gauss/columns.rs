@@ -67,6 +67,7 @@ impl Columns {
     }
 
     /// The most that anything is measured by, inverted, where rounding is not to count, of one trajectory.
+    #[inline]
     pub(super) fn limit(&self, lane: usize) -> f64 {
         limit(self.scales.iter().map(|scale| scale.0[lane]))
     }
@@ -167,19 +168,18 @@ fn set_scales<V: Vector8>(
     running: Bits,
 ) {
     let mut most = V::zero();
-    let sizes = columns.tried.iter_mut().zip(&columns.sizes).zip(&columns.least);
-    for (i, ((((size, known), least), rates), now)) in
-        sizes.zip(&columns.rates).zip(form.measured(y)).enumerate()
-    {
-        let least = V::load(*least).max(unfelt(form, y, i, h));
-        let after = size_of(V::load(*now), &rates[..count], h, (fading * V::load(*known)).max(least));
-        *size = V::select(running, after, V::load(*size)).store();
+    let now = form.measured(y);
+    for i in 0..columns.tried.len() {
+        let least = V::load(columns.least[i]).max(unfelt(form, y, i, h));
+        let known = (fading * V::load(columns.sizes[i])).max(least);
+        let after = size_of(V::load(now[i]), &columns.rates[i][..count], h, known);
+        columns.tried[i] = V::select(running, after, V::load(columns.tried[i])).store();
         most = after.max(most);
     }
     let least = V::splat(LEAST_SCALE) * most;
-    for (scale, &size) in columns.scales.iter_mut().zip(&columns.tried) {
-        let size = V::load(size).max(least);
-        *scale = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
+    for i in 0..columns.tried.len() {
+        let size = V::load(columns.tried[i]).max(least);
+        columns.scales[i] = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
     }
 }
 
@@ -268,26 +268,27 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
                 }
             }
             execute::execute::<V, AT_ONCE>(code, Part::Body, V::view_mut(registers));
-            for ((row, moved), &output) in columns.rates.iter_mut().zip(&mut columns.moved).zip(outputs) {
-                let mut most = V::load(*moved);
+            for i in 0..evaluated {
+                let mut most = V::load(columns.moved[i]);
                 for block in 0..AT_ONCE.min(count - first) {
-                    let found = V::load(registers[usize::from(output) * AT_ONCE + block]);
-                    let rate = &mut row[first + block];
+                    let found = V::load(registers[usize::from(outputs[i]) * AT_ONCE + block]);
+                    let rate = &mut columns.rates[i][first + block];
                     let before = V::load(*rate);
                     if first + block < table.stages {
                         most = larger((found - before).abs(), most);
                     }
                     *rate = V::select(active, found, before).store();
                 }
-                *moved = most.store();
+                columns.moved[i] = most.store();
             }
         }
         if iteration == 1 {
             set_scales(columns, count, (form, state.all().0), (h, V::load(*fading)), running);
         }
         let mut most = V::zero();
-        for (&moved, &scale) in columns.moved.iter().zip(&columns.scales) {
-            most = larger(V::load(moved) * (V::load(scale).min(V::load(limit)) * h.abs()), most);
+        for i in 0..evaluated {
+            let scale = V::load(columns.scales[i]).min(V::load(limit)) * h.abs();
+            most = larger(V::load(columns.moved[i]) * scale, most);
         }
         let most = most.store();
         let open = active;
@@ -328,14 +329,12 @@ fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> Bits {
     let y = state.all().0;
     let (h, fading) = (V::load(*h), V::load(*fading));
     let mut wild = Bits(0);
-    let sizes = columns.tried.iter().zip(&columns.sizes).zip(&columns.least);
-    for (i, ((((&tried, &known), &least), rates), &now)) in
-        sizes.zip(&columns.rates).zip(form.measured(y)).enumerate()
-    {
-        let least = V::load(least).max(unfelt(*form, y, i, h));
-        let known = (fading * V::load(known)).max(least);
-        let size = size_of(V::load(now), &rates[..table.columns()], h, known);
-        wild = wild.or(size.less(V::splat(WILD) * V::load(tried)));
+    let now = form.measured(y);
+    for i in 0..columns.tried.len() {
+        let least = V::load(columns.least[i]).max(unfelt(*form, y, i, h));
+        let known = (fading * V::load(columns.sizes[i])).max(least);
+        let size = size_of(V::load(now[i]), &columns.rates[i][..table.columns()], h, known);
+        wild = wild.or(size.less(V::splat(WILD) * V::load(columns.tried[i])));
     }
     wild.and(*running)
 }

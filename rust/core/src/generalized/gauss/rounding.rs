@@ -31,6 +31,7 @@ impl Rounding {
 
     /// So many times the largest rate a stage is led astray by rounding, at most, in a step of length `h` after so many kept
     /// ones, the last of length `last`.
+    #[inline]
     pub(super) fn astray(&self, table: &Table, kept: u64, (last, h): (f64, f64)) -> f64 {
         if kept == 0 {
             self.first
@@ -43,6 +44,7 @@ impl Rounding {
 }
 
 /// How many times a rounding counts at the last stage of a next step that is so many times as long.
+#[inline]
 fn amplified(table: &Table, ratio: f64) -> f64 {
     let nodes = &table.c.0[..table.stages];
     let x = 1.0 + nodes[table.stages - 1] * ratio;

@@ -70,12 +70,14 @@ impl Stages {
     }
 
     /// The most that anything is measured by, inverted, where rounding is not to count.
+    #[inline]
     pub(super) fn limit(&self) -> f64 {
         limit(self.scales.iter().copied())
     }
 
     /// Remembers how large numbers were in the step that was tried. One that was not kept leaves what it met beside what was
     /// known: a motion from rest has no other size at first.
+    #[inline]
     pub(super) fn remember(&mut self, kept: bool) {
         for (size, &tried) in self.sizes.iter_mut().zip(&self.tried) {
             let before = FADING * *size;
@@ -162,16 +164,19 @@ fn set_scales<V: Vector8>(
     fading: f64,
 ) {
     let mut most = 0.0;
-    let sizes = stages.tried.iter_mut().zip(&stages.sizes).zip(&stages.least);
-    for (i, ((((tried, known), least), &output), now)) in sizes.zip(outputs).zip(form.measured(y)).enumerate()
-    {
-        let least = Real::max(*least, unfelt(form, y, i, h));
-        *tried = size::<V>(*now, &rates[usize::from(output)], h, Real::max(fading * *known, least));
-        most = if *tried > most { *tried } else { most };
+    let now = form.measured(y);
+    // Indices: several iterators zipped are functions of their own, which a loop of a few numbers pays for.
+    for i in 0..stages.tried.len() {
+        let least = Real::max(stages.least[i], unfelt(form, y, i, h));
+        let known = Real::max(fading * stages.sizes[i], least);
+        let tried = size::<V>(now[i], &rates[usize::from(outputs[i])], h, known);
+        stages.tried[i] = tried;
+        most = if tried > most { tried } else { most };
     }
-    for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
+    for i in 0..stages.tried.len() {
+        let size = stages.tried[i];
         let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
-        *scale = if size > 0.0 { 1.0 / size } else { 0.0 };
+        stages.scales[i] = if size > 0.0 { 1.0 / size } else { 0.0 };
     }
 }
 
@@ -224,12 +229,12 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
         }
         let mut change = V::zero();
         let own = own_lanes(table.stages);
-        for ((rates, &scale), &output) in stages.rates.iter_mut().zip(&stages.scales).zip(outputs) {
-            let found = V::load(registers[usize::from(output)]);
-            let scale = V::splat(Real::min(scale, changes.limit) * length);
-            let moved = V::select(own, (found - V::load(*rates)).abs(), V::zero());
+        for i in 0..evaluated {
+            let found = V::load(registers[usize::from(outputs[i])]);
+            let scale = V::splat(Real::min(stages.scales[i], changes.limit) * length);
+            let moved = V::select(own, (found - V::load(stages.rates[i])).abs(), V::zero());
             change = larger(moved * scale, change);
-            *rates = found.store();
+            stages.rates[i] = found.store();
         }
         let change = largest(change.store());
         if let Some(converged) = changes.judged(change, || stages.limit()) {
@@ -245,12 +250,11 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
 fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> bool {
     let Work { form, state, stages, h, fading, .. } = work;
     let y = state.all().0;
-    let sizes = stages.tried.iter().zip(&stages.sizes).zip(&stages.least);
-    for (i, ((((&tried, &known), &least), rates), &now)) in
-        sizes.zip(&stages.rates).zip(form.measured(y)).enumerate()
-    {
-        let least = Real::max(least, unfelt(*form, y, i, *h));
-        if size::<V>(now, rates, *h, Real::max(*fading * known, least)) < WILD * tried {
+    let now = form.measured(y);
+    for i in 0..stages.tried.len() {
+        let least = Real::max(stages.least[i], unfelt(*form, y, i, *h));
+        let known = Real::max(*fading * stages.sizes[i], least);
+        if size::<V>(now[i], &stages.rates[i], *h, known) < WILD * stages.tried[i] {
             return true;
         }
     }
@@ -281,11 +285,11 @@ fn own_lanes(stages: usize) -> Bits {
 #[inline(always)]
 fn told_body<V: Vector8>(stages: &mut Stages, count: usize) {
     let own = own_lanes(count);
-    for ((told, &rates), &guess) in stages.told.iter_mut().zip(&stages.rates).zip(&stages.guess) {
-        let (rates, guess) = (V::load(rates), V::load(guess));
+    for i in 0..stages.told.len() {
+        let (rates, guess) = (V::load(stages.rates[i]), V::load(stages.guess[i]));
         let most = V::select(own, rates.abs(), V::zero()).store();
         let astray = V::select(own, (rates - guess).abs(), V::zero()).store();
-        *told = (largest(most), largest(astray));
+        stages.told[i] = (largest(most), largest(astray));
     }
 }
 
@@ -336,8 +340,8 @@ fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
 /// Where the polynomial through the stages leads, to the stages of the next step or to other places.
 #[inline(always)]
 fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lanes]) {
-    for (to, rates) in to.iter_mut().zip(rates) {
-        *to = combined::<V>(weights, rates).store();
+    for (i, to) in to.iter_mut().enumerate() {
+        *to = combined::<V>(weights, &rates[i]).store();
     }
 }
 

@@ -137,11 +137,12 @@ impl GaussStep {
             self.beyond.rounding.astray(self.table, self.pace.kept, (self.length, h)) * largest_rate;
         let mut most = 0.0;
         let Stages { told, rates, scales, .. } = &self.stages;
-        for ((&(largest, astray), rates), scale) in told.iter().zip(rates).zip(scales) {
-            let astray = if self.pace.kept == 0 { self.table.leading(|k| rates.0[k]) } else { astray };
+        for i in 0..told.len() {
+            let (largest, astray) = told[i];
+            let astray = if self.pace.kept == 0 { self.table.leading(|k| rates[i].0[k]) } else { astray };
             let hardly_moves = largest <= HARDLY * largest_rate;
             let astray = if hardly_moves && astray <= rounding { 0.0 } else { astray };
-            let delta = astray * h.abs() * scale;
+            let delta = astray * h.abs() * scales[i];
             most = if delta > most { delta } else { most };
         }
         most
@@ -153,10 +154,10 @@ impl GaussStep {
         let second_order = matches!(self.form, Form::SecondOrder(_));
         let mut most = 0.0;
         let Stages { told, rates, scales, .. } = &self.stages;
-        for ((&(largest, _), rates), scale) in told.iter().zip(rates).zip(scales) {
-            let beside = |k: usize| rates.0[k] - rates.0[0];
-            let change = if second_order { largest } else { greatest(self.table.stages, beside) };
-            let felt = change * h.abs() * scale;
+        for i in 0..told.len() {
+            let beside = |k: usize| rates[i].0[k] - rates[i].0[0];
+            let change = if second_order { told[i].0 } else { greatest(self.table.stages, beside) };
+            let felt = change * h.abs() * scales[i];
             most = if felt <= most { most } else { felt };
         }
         if second_order { most } else { most.sqrt() }

@@ -87,13 +87,16 @@ impl BodyRungeKutta {
 /// Σ weight·rate.
 fn sum(weights: &[DoubleDouble], rates: &[[Vec<Lanes>; 2]], sums: &mut [Vec<Lanes>; 2]) {
     for (half, sum) in sums.iter_mut().enumerate() {
-        sum.fill(Lanes::zero());
-        for (weight, rate) in weights.iter().zip(rates).filter(|(weight, _)| weight.to_f64() != 0.0) {
-            Lanes::pass(AddTimes {
-                into: sum,
-                what: &rate[half],
-                factor: Lanes::from_double_double(*weight),
-            });
+        // Not `fill`, nor iterators zipped: they are calls, which sums of a few numbers pay for.
+        for number in sum.iter_mut() {
+            *number = Lanes::zero();
+        }
+        for (index, rate) in rates.iter().enumerate().take(weights.len()) {
+            let weight = weights[index];
+            if weight.to_f64() != 0.0 {
+                let factor = Lanes::from_double_double(weight);
+                Lanes::pass(AddTimes { into: sum, what: &rate[half], factor });
+            }
         }
     }
 }

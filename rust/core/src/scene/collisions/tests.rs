@@ -27,6 +27,7 @@ fn balls(position: &[[f64; 3]], coming: &[[f64; 3]], forces: Vec<Arc<dyn ForceTe
         radius: vec![0.5; count],
         rigid: None,
         t0: 0.0,
+        t0_rest: 0.0,
         continuation: None,
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn run(
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
-    let elapsed = |&t: &f64| scale(t - job.scene.t0, -job.plan.units.time);
+    let elapsed = |&t: &f64| scale(job.scene.elapsed(t), -job.plan.units.time);
     let outputs: Arc<[f64]> = job.times.iter().map(elapsed).collect();
     let first = job.prepare(&units[0], ticker)?;
     let own = Forces::own(job, &[&first], threads);

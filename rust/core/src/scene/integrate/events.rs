@@ -35,8 +35,10 @@ use search::Search;
 pub struct Found {
     /// Of which event.
     pub which: usize,
-    /// When.
+    /// When, …
     pub t: f64,
+    /// … and what that leaves out.
+    pub t_rest: f64,
     /// Positions and velocities of the bodies of the unit.
     pub states: Vec<[[f64; 3]; 2]>,
     /// How its rigid bodies are turned and turn, if torques turn them.
@@ -333,7 +335,7 @@ impl<'a> Watch<'a> {
         for (theta, event) in zeros {
             // Of the state nothing is lost to the rounding of the time.
             let elapsed = scale(span.at(theta), self.job.plan.units.time);
-            let t = self.job.scene.t0 + elapsed;
+            let (t, t_rest) = self.job.scene.time_after(elapsed);
             let state = if theta == 1.0 { after } else { step.at(theta, ticker)? };
             let states = (0..unit.unit.bodies.len()).map(|slot| {
                 let entry = unit.read(slot, state, lane, elapsed);
@@ -351,11 +353,11 @@ impl<'a> Watch<'a> {
                     _ => None,
                 };
                 let which = self.contacts.as_ref().map_or(usize::MAX, |contacts| contacts.which);
-                self.found.push(Found { which, t, states, turned, spheres });
+                self.found.push(Found { which, t, t_rest, states, turned, spheres });
                 self.stopped = true;
                 break;
             };
-            self.found.push(Found { which, t, states, turned, spheres: None });
+            self.found.push(Found { which, t, t_rest, states, turned, spheres: None });
             self.counts[event] += 1;
             if self.event(event).0.last.is_some_and(|last| self.counts[event] >= last) {
                 self.stopped = true;

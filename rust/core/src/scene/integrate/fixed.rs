@@ -78,7 +78,7 @@ fn lockstep(
     }
     let unit_of_time = plan.units.time;
     let place = |&t: &f64| {
-        let place = fixed::place(t - t0, dt, Real::max(t.abs(), t0.abs()));
+        let place = fixed::place(job.scene.elapsed(t), dt, Real::max(t.abs(), t0.abs()));
         Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
     };
     let places = job.times.iter().map(place);
@@ -207,7 +207,7 @@ impl Recorder<Lanes> for Records<'_> {
     fn record(&mut self, index: usize, state: &State<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         let job = self.job;
         let t = job.times[index];
-        let elapsed = t - job.scene.t0;
+        let elapsed = job.scene.elapsed(t);
         for (lane, unit) in self.units.iter().enumerate() {
             if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);

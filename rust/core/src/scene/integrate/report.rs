@@ -104,7 +104,7 @@ impl Job<'_> {
         rows: usize,
         counts: Counts,
     ) -> Report {
-        let elapsed = time - self.scene.t0;
+        let elapsed = self.scene.elapsed(time);
         let mut states = Vec::with_capacity(unit.unit.recorded.len());
         for slot in unit.unit.recorded.clone() {
             let entry = unit.read(slot, state, lane, elapsed);

@@ -37,13 +37,8 @@ pub(super) struct Turn {
 /// The orbit of a body of a copy about the one that pulls it most: `Some(None)` of one that is pulled by none more than it
 /// pulls, nothing if it is not bound.
 pub(super) fn turn(scene: &Scene, copy: usize, constant: f64, body: usize) -> Option<Option<Turn>> {
-    let (mass, places) = (scene.masses(copy), scene.positions(copy));
-    let pull = |other: &usize| {
-        let apart = distance(places[body], places[*other]);
-        constant * mass[*other] / apart / apart
-    };
-    let others = (0..scene.particles).filter(|&other| other != body && mass[other] > 0.0);
-    let Some(about) = others.max_by(|a, b| pull(a).total_cmp(&pull(b))) else { return Some(None) };
+    let mass = scene.masses(copy);
+    let [Some(about), _] = strongest(scene, copy, body) else { return Some(None) };
     if mass[about] < mass[body] {
         return Some(None);
     }
@@ -52,15 +47,37 @@ pub(super) fn turn(scene: &Scene, copy: usize, constant: f64, body: usize) -> Op
 
 /// The orbit of a body about the heavier one whose pull changes most from place to place, as that of a planet at its moon.
 fn turn_of_moon(scene: &Scene, copy: usize, constant: f64, body: usize) -> Option<Turn> {
+    let [_, about] = strongest(scene, copy, body);
+    turn_about(scene, copy, constant, (body, about?))
+}
+
+/// The one that pulls a body of a copy most, and of those at least as heavy the one whose pull changes most from place to
+/// place there.
+fn strongest(scene: &Scene, copy: usize, body: usize) -> [Option<usize>; 2] {
     let (mass, places) = (scene.masses(copy), scene.positions(copy));
-    let tide = |other: &usize| {
-        let apart = distance(places[body], places[*other]);
-        mass[*other] / apart / apart / apart
-    };
-    let heavier =
-        (0..scene.particles).filter(|&other| other != body && mass[other] > 0.0 && mass[other] >= mass[body]);
-    let about = heavier.max_by(|a, b| tide(a).total_cmp(&tide(b)))?;
-    turn_about(scene, copy, constant, (body, about))
+    let (mut strongest, mut most) = ([None; 2], [f64::NEG_INFINITY; 2]);
+    for (other, (&mass_there, &there)) in mass.iter().zip(places).enumerate() {
+        if other == body || mass_there <= 0.0 {
+            continue;
+        }
+        let r = apart(places[body], there);
+        let pull = mass_there / r / r;
+        let tide = if mass_there >= mass[body] { pull / r } else { f64::NEG_INFINITY };
+        for (which, strength) in [pull, tide].into_iter().enumerate() {
+            if strength >= most[which] && strength >= 0.0 {
+                (strongest[which], most[which]) = (Some(other), strength);
+            }
+        }
+    }
+    strongest
+}
+
+/// The distance of two points: there are many pairs of them, few of which are so far or near that squares are out of range.
+#[inline]
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let square = x * x + y * y + z * z;
+    if (1e-280..1e280).contains(&square) { square.sqrt() } else { distance(a, b) }
 }
 
 /// The orbit of one body about another, if it is bound.

@@ -9,6 +9,8 @@ struct Line {
     copy: usize,
     which: usize,
     t: f64,
+    /// What that leaves out.
+    t_rest: f64,
     /// Where its states begin.
     states: usize,
     /// The spheres that touch, if it is that.
@@ -42,6 +44,7 @@ impl Events {
                     copy,
                     which: found.which,
                     t: found.t,
+                    t_rest: found.t_rest,
                     states,
                     spheres: found.spheres,
                 });
@@ -57,9 +60,9 @@ impl Events {
         });
     }
 
-    /// The spheres that touched last, if that is what ended the run.
-    pub fn contact(&self) -> Option<(usize, usize)> {
-        self.lines.last().and_then(|line| line.spheres)
+    /// The spheres that touched last, if that is what ended the run, and what the time of that leaves out.
+    pub fn contact(&self) -> Option<((usize, usize), f64)> {
+        self.lines.last().and_then(|line| Some((line.spheres?, line.t_rest)))
     }
 
     /// Adds events of another table, which are called otherwise there, of bodies that are `places` of it each.
@@ -75,7 +78,7 @@ impl Events {
     pub fn put(&mut self, copy: usize, which: usize, t: f64, bodies: impl Iterator<Item = [[f64; 3]; 2]>) {
         let states = self.states.len();
         self.states.extend(bodies);
-        self.lines.push(Line { copy, which, t, states, spheres: None });
+        self.lines.push(Line { copy, which, t, t_rest: 0.0, states, spheres: None });
     }
 
     /// How many there are.

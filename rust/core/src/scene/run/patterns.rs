@@ -58,6 +58,7 @@ fn part(scene: &Scene, members: &[usize]) -> Scene {
         radius: members.iter().flat_map(|&copy| scene.radii(copy)).copied().collect(),
         rigid: scene.rigid.as_ref().map(|rigid| rigid.of(members)),
         t0: scene.t0,
+        t0_rest: scene.t0_rest,
         continuation: None,
     }
 }

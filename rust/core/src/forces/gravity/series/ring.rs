@@ -82,7 +82,8 @@ impl<V: Vector8> Pairs<V> for Turns {
     #[inline(always)]
     fn sum<const C: usize>(&self, pulls: &[[V; C]], a: &mut [V], first: bool) {
         let mut sum = [V::zero(); C];
-        for (turn, pull) in self.turns.iter().zip(pulls) {
+        for (index, turn) in self.turns.iter().enumerate() {
+            let pull = &pulls[index];
             let ahead = V::load(turn.ahead);
             for c in 0..C {
                 sum[c] = ahead.multiply_add(pull[c], sum[c]);

@@ -42,7 +42,7 @@ impl Member {
             return Ok(Vec::new());
         }
         let leg = Leg::of(&self.bodies);
-        let scene = leg.scene(whole, self.copy, &self.bodies, self.outcome.time);
+        let scene = leg.scene(whole, self.copy, &self.bodies, self.time());
         let value =
             |event: &Event| leg.what(&event.what).map_or(Ok(None), |what| value(&what, &scene, ticker));
         request.events.iter().map(value).collect()

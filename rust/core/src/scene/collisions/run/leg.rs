@@ -25,8 +25,14 @@ impl Leg {
         Self { bodies, places }
     }
 
-    /// The scene at this time.
-    pub(super) fn scene(&self, whole: &Scene, copy: usize, impact: &Impact, t0: f64) -> Scene {
+    /// The scene at this time, with what that leaves out.
+    pub(super) fn scene(
+        &self,
+        whole: &Scene,
+        copy: usize,
+        impact: &Impact,
+        (t0, t0_rest): (f64, f64),
+    ) -> Scene {
         let pick = |of: &[[f64; 3]]| self.bodies.iter().map(|&body| of[body]).collect();
         Scene {
             copies: 1,
@@ -39,6 +45,7 @@ impl Leg {
             radius: self.bodies.iter().map(|&body| impact.radius[body]).collect(),
             rigid: None,
             t0,
+            t0_rest,
             continuation: None,
         }
     }

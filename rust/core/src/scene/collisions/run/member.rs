@@ -18,8 +18,12 @@ use std::collections::BTreeMap;
 /// Spheres rest on each other that part by less than this part of their radii,
 const REST: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// so many times in succession.
+/// so many times in succession, with nobody else in between: …
 const RESTS: u32 = 16;
+
+/// … what has a mass and is thrown to and fro by two others that keep their energy turns them back after π/2 √(M/m) bounces
+/// (G. Galperin, Regul. Chaotic Dyn. 8 (2003) 375), and comes as near to them before.
+const THROWN: u32 = 1 << 17;
 
 /// Impulses at one time after which bodies are pressed together, for each pair in contact.
 const IMPULSES: usize = 1000;
@@ -27,7 +31,8 @@ const IMPULSES: usize = 1000;
 /// How two spheres met last.
 #[derive(Clone, Copy)]
 struct Met {
-    t: f64,
+    /// How long after the start.
+    elapsed: f64,
     /// How fast they parted.
     speed: f64,
     rests: u32,
@@ -38,6 +43,10 @@ pub(super) struct Member {
     pub(super) bodies: Impact,
     pub(super) columns: Columns,
     pub(super) outcome: Outcome,
+    /// What the time of that leaves out.
+    time_rest: f64,
+    /// When the run began.
+    t0: f64,
     pub(super) events: Events,
     pub(super) lines: Vec<Collision>,
     pub(super) kept: Option<Kept>,
@@ -48,6 +57,8 @@ pub(super) struct Member {
     pub(super) copy: usize,
     rule: Collisions,
     met: BTreeMap<(usize, usize), Met>,
+    /// Whom each body met last.
+    partner: Vec<Option<usize>>,
     squeezed: Squeezed,
     /// How often each event was found.
     pub(super) found: Vec<u64>,
@@ -68,6 +79,8 @@ impl Member {
             bodies,
             columns: Columns::default(),
             outcome: Outcome { rows: 0, time: scene.t0, ..Outcome::finished(request) },
+            time_rest: 0.0,
+            t0: scene.t0,
             events: Events::default(),
             lines: Vec::new(),
             kept: None,
@@ -75,6 +88,7 @@ impl Member {
             copy,
             rule,
             met: BTreeMap::new(),
+            partner: vec![None; scene.particles],
             squeezed: Squeezed::default(),
             found: vec![0; request.events.len()],
         };
@@ -119,7 +133,7 @@ impl Member {
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<(usize, usize)>> {
         let leg = Leg::of(&self.bodies);
-        let mut scene = leg.scene(whole, self.copy, &self.bodies, self.outcome.time);
+        let mut scene = leg.scene(whole, self.copy, &self.bodies, self.time());
         if self.lines.is_empty() && self.outcome.rows == 0 {
             scene.continuation =
                 whole.continuation.as_ref().map(|from| part_of(from, whole, self.copy, &leg));
@@ -150,6 +164,16 @@ impl Member {
         self.take(whole, request, &leg, &names, output)
     }
 
+    /// How far it has come, and what that leaves out.
+    pub(super) fn time(&self) -> (f64, f64) {
+        (self.outcome.time, self.time_rest)
+    }
+
+    /// How long after the start that is.
+    fn elapsed(&self) -> f64 {
+        (self.outcome.time - self.t0) + self.time_rest
+    }
+
     /// Takes in what a leg gives; the spheres that touch at its end.
     fn take(
         &mut self,
@@ -176,7 +200,7 @@ impl Member {
         self.events.extend(&output.events, self.copy, names, &leg.places);
         let rows = self.outcome.rows;
         self.outcome.rows += outcome.rows;
-        self.outcome.time = outcome.time;
+        (self.outcome.time, self.time_rest) = (outcome.time, 0.0);
         self.outcome.add(&outcome);
         let at_once = leg.bodies.len() == whole.particles && outcome.rows == request.times.len();
         if rows == 0 && at_once {
@@ -192,8 +216,9 @@ impl Member {
         self.from = output.plan.from;
         self.kept = output.kept.map(|kept| Kept { held: kept.held.of_bodies(&leg.places), ..kept });
         if outcome.ending == Ending::Stopped
-            && let Some((i, j)) = output.events.contact()
+            && let Some(((i, j), rest)) = output.events.contact()
         {
+            self.time_rest = rest;
             let (i, j) = (leg.bodies[i], leg.bodies[j]);
             return Ok(Some((i.min(j), i.max(j))));
         }
@@ -239,7 +264,7 @@ impl Member {
     /// Lets spheres bounce that touch, the fastest first, until none approach: whatever was found, so that it does not
     /// matter how bodies are numbered.
     fn bounce(&mut self, mut found: Option<(usize, usize)>, restitution: f64) -> bool {
-        let t = self.outcome.time;
+        let (t, elapsed) = (self.outcome.time, self.elapsed());
         let mut touching = self.bodies.touching();
         if let Some(pair) = found.filter(|pair| !touching.contains(pair)) {
             touching.push(pair);
@@ -252,8 +277,8 @@ impl Member {
                 return true;
             }
             for (collision, speed) in self.bodies.bounce_together(&pairs, restitution, t) {
-                let (pair, met_with) = (collision.bodies, collision.speed);
-                let squeezed = self.squeezed.note(&self.bodies, &collision);
+                let (pair, speeds) = (collision.bodies, (collision.speed, speed));
+                let squeezed = self.squeezed.note(&self.bodies, &collision, elapsed);
                 self.put(collision);
                 if squeezed {
                     self.outcome.ending = Ending::Squeezed { bodies: pair };
@@ -261,11 +286,13 @@ impl Member {
                 }
                 if found.take_if(|found| *found == pair).is_none() {
                     let rests = self.met.get(&pair).map_or(0, |met| met.rests);
-                    let _ = self.met.insert(pair, Met { t, speed, rests });
-                } else if self.rests(pair, met_with, speed) {
+                    let _ = self.met.insert(pair, Met { elapsed, speed, rests });
+                } else if self.rests(pair, speeds, restitution) {
                     self.outcome.ending = Ending::Resting { bodies: pair };
                     return false;
                 }
+                let (i, j) = pair;
+                (self.partner[i], self.partner[j]) = (Some(j), Some(i));
             }
         }
         let bodies = touching.first().copied().unwrap_or_default();
@@ -274,16 +301,17 @@ impl Member {
     }
 
     /// Takes note of a bounce; whether the two have come to rest on each other.
-    fn rests(&mut self, pair: (usize, usize), met_with: f64, parted_with: f64) -> bool {
-        let t = self.outcome.time;
+    fn rests(&mut self, pair: (usize, usize), (met_with, parted_with): (f64, f64), restitution: f64) -> bool {
+        let elapsed = self.elapsed();
         let sum = self.bodies.radius[pair.0] + self.bodies.radius[pair.1];
         let rests = self.met.get(&pair).map_or(0, |met| {
             // What rises and falls freely comes that far, from the speed and the time that it takes.
-            let apart = 0.25 * met.speed.max(met_with) * (t - met.t).abs();
+            let apart = 0.25 * met.speed.max(met_with) * (elapsed - met.elapsed).abs();
             if apart <= REST * sum { met.rests + 1 } else { 0 }
         });
-        let _ = self.met.insert(pair, Met { t, speed: parted_with, rests });
-        rests >= RESTS
+        let _ = self.met.insert(pair, Met { elapsed, speed: parted_with, rests });
+        let alone = self.partner[pair.0] == Some(pair.1) && self.partner[pair.1] == Some(pair.0);
+        rests >= if alone || restitution < 1.0 { RESTS } else { THROWN }
     }
 
     fn merge(&mut self, pair: Option<(usize, usize)>) -> bool {

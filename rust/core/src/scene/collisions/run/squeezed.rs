@@ -22,7 +22,8 @@ pub(super) struct Squeezed(BTreeMap<usize, Last>);
 
 #[derive(Clone, Copy)]
 struct Last {
-    t: f64,
+    /// How long after the start.
+    elapsed: f64,
     /// How fast it was met.
     speed: f64,
     /// How long after the one before, and that of the first in succession.
@@ -33,17 +34,19 @@ struct Last {
 }
 
 impl Squeezed {
-    /// Takes note of a bounce; whether it is one of infinitely many.
-    pub(super) fn note(&mut self, bodies: &Impact, collision: &Collision) -> bool {
+    /// Takes note of a bounce so long after the start; whether it is one of infinitely many.
+    pub(super) fn note(&mut self, bodies: &Impact, collision: &Collision, elapsed: f64) -> bool {
         let (i, j) = collision.bodies;
         let (light, heavy) = if bodies.mass[i] < bodies.mass[j] { (i, j) } else { (j, i) };
         if bodies.mass[light] >= UNFELT * bodies.mass[heavy] {
+            // Who feels it is turned back by it.
+            let _ = self.0.remove(&light);
             return false;
         }
-        let (t, speed) = (collision.t, collision.speed);
-        let first = Last { t, speed, after: f64::INFINITY, first_after: f64::INFINITY, bounces: 0 };
+        let speed = collision.speed;
+        let first = Last { elapsed, speed, after: f64::INFINITY, first_after: f64::INFINITY, bounces: 0 };
         let last = self.0.entry(light).or_insert(first);
-        let after = (t - last.t).abs();
+        let after = (elapsed - last.elapsed).abs();
         let bounces = if speed > last.speed && after < last.after { last.bounces + 1 } else { 0 };
         *last = match bounces {
             0 => first,

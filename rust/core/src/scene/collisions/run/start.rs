@@ -53,7 +53,7 @@ pub fn absorbed(scene: &Scene) -> Option<(usize, usize)> {
 pub(super) fn whole_of(scene: &Scene, copy: usize, rule: Collisions) -> Option<Scene> {
     let bodies = bodies_of(scene, copy, rule, 1.0);
     let leg = Leg::of(&bodies);
-    (leg.bodies.len() < scene.particles).then(|| leg.scene(scene, copy, &bodies, scene.t0))
+    (leg.bodies.len() < scene.particles).then(|| leg.scene(scene, copy, &bodies, (scene.t0, scene.t0_rest)))
 }
 
 /// Refuses spheres that overlap at the start.

@@ -108,7 +108,7 @@ impl Run<'_> {
             }
             let Some(slot) = self.slots[lane].as_mut() else { continue };
             let state = if round.inside.lane(lane) { &self.between } else { self.trial.next() };
-            let elapsed = self.job.times[slot.next_output] - self.job.scene.t0;
+            let elapsed = self.job.scene.elapsed(self.job.times[slot.next_output]);
             // A step is only accepted with a finite error, so its states are finite.
             let _: bool =
                 slot.unit.record(self.job.writer, slot.next_output, state, lane, elapsed, ticker)?;
