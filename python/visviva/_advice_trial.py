@@ -23,9 +23,11 @@ __all__ = ["TIGHTEST", "Trial", "trial_of"]
 
 # The tightest tolerance, and one that is a little looser.
 TIGHTEST, _LOOSER = 2.3e-14, 1e-13
-# The reference of a stretch takes this long, that of the whole span no longer than this; both are for so many times.
+# The reference of a stretch takes this long, that of the whole span no longer than this.
 _SECONDS, _WHOLE = 0.03, 1.0
-_OUTPUTS = 32
+# Errors are looked at so many times: what a method loses in an encounter it may have back soon after. Of many bodies,
+# whose energies take as long as steps, at fewer.
+_MOST_OUTPUTS, _FEWEST_OUTPUTS, _PAIRS = 1024, 32, 1 << 16
 # Of these it is made: by the first of those that are equally sure.
 _REFERENCES = ("dop853", "verner98", "taylor")
 
@@ -151,12 +153,18 @@ def _referred(
 def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
     """The columns of a stretch, its steps and seconds; None if refused, warned of or ended early."""
     try:
-        result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
+        result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _outputs(asked))
     except InvalidInput:
         return None
     if result["error"] or result["status"].any() or resolves_nothing(result):
         return None
     return result["columns"], result["stats"]["steps"], seconds
+
+
+def _outputs(asked: dict[str, Any]) -> int:
+    bodies: int = asked["mass"].shape[1]
+    pairs = max(1, bodies * (bodies - 1) // 2)
+    return min(_MOST_OUTPUTS, max(_FEWEST_OUTPUTS, _PAIRS // pairs))
 
 
 def _of(columns: dict[str, Any], column: str, bodies: Any) -> Any:

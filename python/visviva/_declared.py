@@ -210,13 +210,13 @@ class Declared:
         if type(other) is not type(self):
             return NotImplemented
         theirs = other._values()
-        return all(np.array_equal(value, theirs[name]) for name, value in self._values().items())
+        return all(np.array_equal(_as_kept(value), _as_kept(theirs[name])) for name, value in self._values().items())
 
     def __hash__(self) -> int:
         # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
         keys = (
             value.tobytes() if isinstance(value, np.ndarray) else value
-            for value in map(_zeroed, self._values().values())
+            for value in map(_zeroed, map(_as_kept, self._values().values()))
         )
         return hash((type(self).__name__, *keys))
 
@@ -363,6 +363,11 @@ def _frozen(array: NDArray[Any], given: object) -> Any:
 
 def _plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def _as_kept(value: Any) -> Any:
+    """An array of one as the number in it, which means the same to the core, and as which files give it back."""
+    return value.item() if isinstance(value, np.ndarray) and value.shape == (1,) else value
 
 
 def _zeroed(value: Any) -> Any:

@@ -11,6 +11,9 @@ from dataclasses import FrozenInstanceError
 from typing import TYPE_CHECKING, Never, TypeAlias
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory, PoincareSection
     from visviva.initial_value import OdeResult
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
     SoFar: TypeAlias = (
         Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory | OdeResult | None
     )
-    Counted: TypeAlias = MonteCarlo | FoilResult | PoincareSection | None
+    Counted: TypeAlias = MonteCarlo | FoilResult | PoincareSection | NDArray[np.float64] | None
 
 __all__ = [
     "AccuracyWarning",
@@ -245,8 +248,9 @@ class Interrupted(KeyboardInterrupt):
         What was stopped.
     trajectory : Trajectory, optional
         What was computed until then.
-    result : MonteCarlo, FoilResult or PoincareSection, optional
-        The events that a Monte Carlo counted until then, or the points of a section.
+    result : MonteCarlo, FoilResult, PoincareSection or ndarray, optional
+        The events that a Monte Carlo counted until then, the points of a section, or the Lyapunov exponents of the
+        motion up to then.
 
     Examples
     --------

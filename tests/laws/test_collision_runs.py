@@ -358,8 +358,11 @@ def test_jumps_of_copies_are_those_that_each_has_alone() -> None:
 @each_method
 @pytest.mark.parametrize("t0", [1e9, -1e9, 1e12])
 def test_far_from_the_time_zero_bounces_lose_nothing(method: str, t0: float) -> None:
-    """A time of 1e9 has no digits for the 1e-7 in which a ball comes as far as its own rounding a billion times over."""
-    places, speeds = [[-1.5, 0, 0], [0, 0, 0], [0.5, 0, 0], [1.5, 0, 0]], [[0, 0, 0], [1, 0, 0], [-0.7, 0, 0], [0, 0, 0]]
+    """A time of 1e9 tells no more than 1e-7: what comes after a bounce goes on from where it was, not from there."""
+    places, speeds = (
+        [[-1.5, 0, 0], [0, 0, 0], [0.5, 0, 0], [1.5, 0, 0]],
+        [[0, 0, 0], [1, 0, 0], [-0.7, 0, 0], [0, 0, 0]],
+    )
     here = spheres([1e6, 1.0, 2.0, 1e6], places, speeds, 0.125, vv.UniformField((0, -0.5, 0)))
     times = np.array([0.0, 2.5, 5.0, 9.0, 10.0])
     there = vv.Scene(here.particles, *here.forces, t0=t0)

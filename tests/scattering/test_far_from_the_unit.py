@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import mpmath
 import numpy as np
 import pytest
@@ -147,3 +149,51 @@ def test_weak_powers_have_a_number_wherever_they_act(n: float, energy: float) ->
     if energy >= 1e30:
         small = float(mpmath.sqrt(mpmath.pi) * mpmath.gamma((n + 1.0) / 2.0) / mpmath.gamma(n / 2.0)) / energy
         assert found.angle == pytest.approx(small, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize(("strength", "n", "energy"), [(-1e-12, 0.3, 1.0), (-1e-10, 0.5, 1.0), (-1.0, 1.2, 1e24)])
+def test_faint_attraction_far_beyond_where_it_is_the_energy(strength: float, n: float, energy: float) -> None:
+    """To first order ψ = k/(E bⁿ) √π Γ((n+1)/2)/Γ(n/2) (Landau & Lifshitz, § 20); the next is |V|/E of it."""
+    b = np.array([0.5, 1.0, 2.0, 1e3])
+    found = S.deflect(PowerLaw(strength, n), energy=energy, impact_parameter=b)
+    expected = strength / energy * b**-n * np.sqrt(np.pi) * math.gamma(0.5 * (n + 1.0)) / math.gamma(0.5 * n)
+    assert np.allclose(found.angle, expected, rtol=1e-9, atol=0.0)
+    assert np.allclose(found.closest_approach, b, rtol=1e-9, atol=0.0)
+    middle = S.impact_parameter(PowerLaw(strength, n), energy=energy, angle=abs(expected[1]))
+    assert middle == pytest.approx([1.0], rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize("n", [0.3, 0.5, 0.9, 1.5])
+def test_angles_beside_a_center_that_attracts_slowly_only_rise(n: float) -> None:
+    """From −πn/(2 − n) on, by no more than its rounding where b is tiny: of that nothing is a rainbow."""
+    assert S.rainbows(PowerLaw(-1.0, n), energy=1.0) == ()
+    b = np.logspace(-26.0, -6.0, 11)
+    slopes = S.deflect(PowerLaw(-1.0, n), energy=1.0, impact_parameter=b).derivative
+    assert (slopes > 0.0).all()
+
+
+@pytest.mark.parametrize(("n", "b"), [(0.5, 1e-12), (0.5, 1e-20), (0.9, 1e-9), (0.9, 1e-18)])
+def test_slopes_beside_a_center_that_attracts_slowly(n: float, b: float) -> None:
+    """Against differences of the angle to fifty digits; by four powers of b, whose rest is 1e-7."""
+    with mpmath.workdps(60):
+        wide, narrow = (beside_center(mpmath.mpf(n), b * (1 + mpmath.mpf(part))) for part in ("1e-12", "-1e-12"))
+        slope = (wide - narrow) / (2 * mpmath.mpf("1e-12") * b)
+    found = S.deflect(PowerLaw(-1.0, n), energy=1.0, impact_parameter=b).derivative
+    assert found == pytest.approx(float(slope), rel=1e-6, abs=0.0)
+
+
+def beside_center(n: mpmath.mpf, b: mpmath.mpf) -> mpmath.mpf:
+    """ψ of −1/rⁿ at E = 1, by r = r₀/sin φ."""
+    low, high = mpmath.mpf(0), b
+    for _ in range(320):
+        middle = (low + high) / 2
+        low, high = (middle, high) if middle * middle + middle ** (2 - n) < b * b else (low, middle)
+    share, pull = (b / high) ** 2, high**-n
+
+    def part(phi: mpmath.mpf) -> mpmath.mpf:
+        sine, cosine = mpmath.sin(phi), mpmath.cos(phi)
+        return cosine / mpmath.sqrt(1 - share * sine**2 + pull * sine**n)
+
+    outer = mpmath.quad(part, [0, mpmath.pi / 8, mpmath.pi / 4])
+    inner = mpmath.quad(part, [mpmath.pi / 4, mpmath.pi / 2], method="gauss-legendre")
+    return mpmath.pi - 2 * mpmath.sqrt(share) * (outer + inner)

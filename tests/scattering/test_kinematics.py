@@ -248,3 +248,13 @@ def test_refusals(argument: str, message: str, call: object) -> None:
     with pytest.raises(vv.InvalidInput, match=message) as caught:
         call()  # type: ignore[operator]
     assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize("angle", [1e-9, 1e-6, 1e-3, 0.1])
+def test_both_branches_of_small_recoils_keep_their_digits(angle: float) -> None:
+    """Where something is taken up a recoil has two; recoil_angle, which both lead back to, is exact in small angles."""
+    how = {"mass_ratio": 0.0376, "beam_energy": 0.277, "q_value": -0.091}
+    for found in s.cm_angle_from_recoil(angle, **how):
+        assert s.recoil_angle(found, **how) == pytest.approx(angle, rel=1e-14, abs=0.0)
+        # A complement of π has that many digits only.
+        assert found < 1.0 or angle > 0.01

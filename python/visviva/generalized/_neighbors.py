@@ -154,44 +154,53 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     # Parts that are still to come, the next one last.
     pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
     shortest = 1e-6 * abs(t - system.t0) / parts
-    while pending:
-        begin, end = pending.pop()
-        asked = {
-            "method": "gauss16",
-            "span": (begin, end),
-            "rtol": rtol,
-            "atol": None,
-            "dt": None,
-            "max_step": None,
-            "max_steps": MOST_STEPS,
-            "outputs": np.array([end]),
-            "events": [],
-        }
-        all_of_them = np.zeros((n, n))
-        all_of_them[:, :several] = frame
-        both = np.concatenate([state, all_of_them.ravel()])
-        result = model.run(asked, both[None, :], system._values[None, :], 1, None)
-        if result["interrupted"]:
-            raise Interrupted("the exponents were interrupted")
-        failed, stretch = result["failures"][0], np.zeros(several)
-        if failed is None and np.isfinite(result["y"][-1]).all():
-            last = result["y"][-1]
-            after, moved = neighbors.put_on(end, last[:n], last[n:].reshape(n, n)[:, :several])
-            turned, sizes = np.linalg.qr(moved)
-            stretch = np.abs(np.diag(sizes))
-        # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal again
-        # before that.
-        if stretch.min() <= _DROWNED * stretch.max():
-            if abs(end - begin) <= shortest:
-                raise ConvergenceError(
-                    failed or "what neighbors do differs too much in the shortest time to be told apart", begin
-                )
-            middle = begin + 0.5 * (end - begin)
-            pending += [(middle, end), (begin, middle)]
-            continue
-        state, frame = after, turned
-        sums += np.log(stretch)
-    return np.sort(sums / (t - system.t0))[::-1]
+    reached = system.t0
+    try:
+        while pending:
+            begin, end = pending.pop()
+            asked = {
+                "method": "gauss16",
+                "span": (begin, end),
+                "rtol": rtol,
+                "atol": None,
+                "dt": None,
+                "max_step": None,
+                "max_steps": MOST_STEPS,
+                "outputs": np.array([end]),
+                "events": [],
+            }
+            all_of_them = np.zeros((n, n))
+            all_of_them[:, :several] = frame
+            both = np.concatenate([state, all_of_them.ravel()])
+            result = model.run(asked, both[None, :], system._values[None, :], 1, None)
+            if result["interrupted"]:
+                raise KeyboardInterrupt
+            failed, stretch = result["failures"][0], np.zeros(several)
+            if failed is None and np.isfinite(result["y"][-1]).all():
+                last = result["y"][-1]
+                after, moved = neighbors.put_on(end, last[:n], last[n:].reshape(n, n)[:, :several])
+                turned, sizes = np.linalg.qr(moved)
+                stretch = np.abs(np.diag(sizes))
+            # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal
+            # again before that.
+            if stretch.min() <= _DROWNED * stretch.max():
+                if abs(end - begin) <= shortest:
+                    raise ConvergenceError(
+                        failed or "what neighbors do differs too much in the shortest time to be told apart", begin
+                    )
+                middle = begin + 0.5 * (end - begin)
+                pending += [(middle, end), (begin, middle)]
+                continue
+            state, frame = after, turned
+            sums, reached = sums + np.log(stretch), end
+    except KeyboardInterrupt as stopped:
+        done = None if reached == system.t0 else _exponents(sums, reached - system.t0)
+        raise Interrupted(f"the exponents were interrupted at t = {reached:g}", result=done) from stopped
+    return _exponents(sums, t - system.t0)
+
+
+def _exponents(sums: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    return np.sort(sums / time)[::-1]
 
 
 def __dir__() -> list[str]:

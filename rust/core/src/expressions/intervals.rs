@@ -17,6 +17,8 @@ const LOW_DEGREE: u32 = 32;
 const GROWTH: f64 = 4.0;
 /// Beneath this exponent an exponential is zero.
 const VANISHES: f64 = -745.2;
+/// Above that it is infinite, as what is divided by it is zero.
+const OVERFLOWS: f64 = 709.8;
 
 /// All numbers between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -215,7 +217,7 @@ fn call(function: Function, x: Interval) -> (Interval, bool) {
             let distance = (pole - x.high).min(x.low - (pole - PI));
             (if clear { ends() } else { Interval::ANY }, clear && is_slow(distance))
         }
-        Function::Exp => (ends(), is_slow(GROWTH) || x.high < VANISHES),
+        Function::Exp => (ends(), is_slow(GROWTH) || x.high < VANISHES || x.low > OVERFLOWS),
         Function::Ln => (ends(), x.low > 0.0 && x.is_within(GROWTH)),
         Function::Sqrt => {
             (Interval::between(x.low.max(0.0).sqrt(), x.high.sqrt()), x.low > 0.0 && x.is_within(GROWTH))

@@ -22,6 +22,11 @@ fn branch<const WHICH: usize>(circle: Circle, lab_angle: f64) -> f64 {
     [first, second].get(WHICH).copied().flatten().map_or(f64::NAN, |(angle, _)| angle)
 }
 
+/// The same of a target's angle: it goes the other way.
+fn recoil_branch<const WHICH: usize>(circle: Circle, lab_angle: f64) -> f64 {
+    circle.complements(lab_angle).get(WHICH).copied().flatten().unwrap_or(f64::NAN)
+}
+
 /// What a projectile has of the beam energy at a laboratory angle.
 fn kept_at<const WHICH: usize>(encounter: &Encounter, lab_angle: f64) -> Result<f64> {
     let parts = encounter.projectile().energies(lab_angle)?;
@@ -43,10 +48,8 @@ const FUNCTIONS: &[(&str, Function)] = &[
     ("recoil_jacobian", |of, angle| Ok(of.target().circle().jacobian(HalfAngle::of(angle).mirrored()))),
     ("cm_angle", |of, angle| Ok(branch::<0>(of.projectile().circle(), angle))),
     ("second_cm_angle", |of, angle| Ok(branch::<1>(of.projectile().circle(), angle))),
-    ("recoil_cm_angle", |of, angle| Ok(core::f64::consts::PI - branch::<0>(of.target().circle(), angle))),
-    ("second_recoil_cm_angle", |of, angle| {
-        Ok(core::f64::consts::PI - branch::<1>(of.target().circle(), angle))
-    }),
+    ("recoil_cm_angle", |of, angle| Ok(recoil_branch::<0>(of.target().circle(), angle))),
+    ("second_recoil_cm_angle", |of, angle| Ok(recoil_branch::<1>(of.target().circle(), angle))),
     ("fast", kept_at::<0>),
     ("slow", kept_at::<1>),
     ("greatest_lab_angle", |of, _| Ok(of.projectile().circle().greatest_angle())),

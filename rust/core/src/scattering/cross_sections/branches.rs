@@ -217,10 +217,14 @@ impl Structure<'_> {
         target: f64,
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<Sample>> {
-        // Near π what is missing to it has the digits; it falls as the angle rises.
-        let near = target > 1.0 && target <= PI;
+        // Near ±π what is missing to it has the digits, on this side of zero.
+        let near = target.abs() > 1.0 && target.abs() <= PI;
         let sign = |sample: &Sample| {
-            if near { (PI - target) - sample.complement } else { sample.angle - target }
+            if near && sample.angle * target > 0.0 {
+                target.signum() * ((PI - target.abs()) - sample.complement)
+            } else {
+                sample.angle - target
+            }
         };
         if let Some(exact) = stretch.iter().find(|sample| sign(sample) == 0.0) {
             return Ok(Some(*exact));

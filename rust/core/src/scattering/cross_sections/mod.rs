@@ -68,6 +68,17 @@ struct Sample {
     derivative: f64,
 }
 
+impl Sample {
+    /// Whether ψ rises with b (1) or falls (−1); 0 where rounding of ψ is all there is of it.
+    fn rises(&self) -> f64 {
+        let told = self.b * self.derivative.abs() > ROUNDING * self.angle.abs();
+        if told { self.derivative.signum() } else { 0.0 }
+    }
+}
+
+/// As a part of ψ, what its derivative loses of it.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// The deflection function at one energy, cut into monotone stretches.
 #[derive(Debug)]
 pub struct Structure<'a> {
@@ -171,10 +182,12 @@ impl<'a> Structure<'a> {
                 continue;
             }
             let next = sampled(*b, Some(deflection));
-            if let Some(last) = stretch.last().copied()
-                && last.derivative * next.derivative < 0.0
+            if let Some(at) = stretch.iter().rposition(|sample| sample.rises() != 0.0)
+                && stretch[at].rises() * next.rises() < 0.0
             {
-                let top = self.rainbow(last, next, ticker)?;
+                let top = self.rainbow(stretch[at], next, ticker)?;
+                // What is between tells nothing but rounding.
+                stretch.truncate(at + 1);
                 self.rainbows.push(Rainbow { impact_parameter: top.b, angle: top.angle });
                 stretch.push(top);
                 self.stretches.push(core::mem::replace(&mut stretch, vec![top]));

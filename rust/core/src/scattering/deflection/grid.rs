@@ -119,7 +119,8 @@ impl Grid {
             }
             step /= 2;
         }
-        at.map(|at| if at > first && at <= last { at } else { 0 })
+        // The last place was not asked: what comes there turns in its cell, or beyond the grid.
+        at.map(|at| if at > first && at < last { at } else { 0 })
     }
     /// The cell of the grid that ends at a place.
     #[inline(always)]

@@ -7,7 +7,8 @@ use super::{Deflection, Status};
 use crate::Result;
 use crate::numerics::elementary::{Exponential, ln};
 use crate::parallel::Ticker;
-use core::f64::consts::PI;
+use core::f64::consts::{LN_2, PI};
+use nalgebra::{Matrix4, Vector4};
 
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
 const TINY: f64 = 1.0 / (1 << 26) as f64;
@@ -21,12 +22,16 @@ const FAR_ABOVE: f64 = 4.0 / f64::EPSILON;
 /// Newton's steps to where a slow attraction turns, from what is off by a part of E/V at most.
 const STEPS: usize = 4;
 
-/// Up to that part of the distance where |V| is the energy an angle beside a center that attracts is a parabola: its cube
-/// there is a part of 1e-10, and what its derivative loses to rounding, which goes as 1/b², is no more yet.
-const PARABOLIC: f64 = 1e-5;
+/// Where the first of what an angle beside a center that attracts has beyond its limit is so small, its derivative, which
+/// loses as many digits to rounding, is told by so many powers of b instead, …
+const FEW: f64 = 1e-5;
+const TERMS: usize = 4;
 
-/// How well three angles agree that are a parabola's: some thousand of their roundings, and 1e-7 of what the last is from
-/// the limit.
+/// … which differ by that at least, at b where the next power is nothing beside one, …
+const ONE_POWER: f64 = 1e-6;
+const NEXT: f64 = 1e-14;
+
+/// … if one more angle agrees with them: to some thousand of its roundings.
 const SAME: f64 = 1e-12;
 
 impl Quadrature<'_> {
@@ -48,8 +53,8 @@ impl Quadrature<'_> {
         (nothing, nothing)
     }
 
-    /// The derivatives of those that nearly meet a center which attracts, from the limit of b → 0 and two angles beside it,
-    /// if ψ is a parabola there.
+    /// The derivatives of those that nearly meet a center which attracts, from the limit of b → 0 and angles beside it, if
+    /// they differ by [powers](powers) of b.
     /// The integral for them is the rest of two that are larger as r₀ is smaller.
     ///
     /// # Errors
@@ -65,32 +70,44 @@ impl Quadrature<'_> {
             Center::Attractive(power) if power < 2.0 => power,
             _ => return Ok(()),
         };
+        let [powers @ .., next] = powers(power);
         let mut near: Vec<(usize, f64)> = Vec::new();
         let mut critical = Critical::default();
         for (place, (energy, b)) in energy.iter().zip(b).enumerate() {
             let own = self.profile.take_energy(*energy);
-            let beside = self.profile.give_length(PARABOLIC * self.profile.grid().reach(own, power));
+            let reach = self.profile.give_length(self.profile.grid().reach(own, power));
+            let beside = reach * Exponential::exp(ln(NEXT) / next);
+            let few = reach * Exponential::exp(ln(FEW) / powers[0]);
             let mut bounces = || matches!(critical.way(self.profile, own, 0.0), Way::Bounces(_));
-            if *b < beside && found[place].status == Status::Scattered && bounces() {
+            if *b < few.min(beside) && found[place].status == Status::Scattered && bounces() {
                 near.push((place, beside));
             }
         }
         if near.is_empty() {
             return Ok(());
         }
-        let energies: Vec<f64> = near.iter().flat_map(|(place, _)| [energy[*place]; 3]).collect();
-        let beside: Vec<f64> = near.iter().flat_map(|(_, b)| [*b, 0.5 * b, 0.25 * b]).collect();
+        // By halves of the first power.
+        let shares: [f64; TERMS + 1] =
+            core::array::from_fn(|k| Exponential::exp(-(k as f64) * LN_2 / powers[0]));
+        let energies: Vec<f64> = near.iter().flat_map(|(place, _)| [energy[*place]; TERMS + 1]).collect();
+        let beside: Vec<f64> = near.iter().flat_map(|(_, b)| shares.map(|share| share * b)).collect();
         let angles = Self { all: false, ..*self }.deflections(&energies, &beside, ticker)?;
         let limit = -PI * power / (2.0 - power);
-        for ((place, beside), three) in near.into_iter().zip(angles.chunks_exact(3)) {
-            let secant = |k: usize, b: f64| (three[k].angle - limit) / b;
-            let [outer, inner] = [secant(0, beside), secant(1, 0.5 * beside)];
-            let (slope, bend) = (2.0 * inner - outer, (outer - inner) / (0.5 * beside));
-            // A third angle tells whether it is a parabola, and no broken power of b.
-            let near = 0.25 * beside;
-            let found_there = three[2].angle - limit;
-            if (found_there - near * (slope + bend * near)).abs() <= SAME {
-                found[place].derivative = slope + 2.0 * bend * b[place];
+        let terms = |share: f64| powers.map(|power| Exponential::exp(ln(share) * power));
+        let rows: [[f64; TERMS]; TERMS] = core::array::from_fn(|k| terms(shares[k]));
+        let solved = Matrix4::from(rows).transpose().lu();
+        for ((place, beside), angles) in near.into_iter().zip(angles.chunks_exact(TERMS + 1)) {
+            let off: [f64; TERMS + 1] = core::array::from_fn(|k| angles[k].angle - limit);
+            let Some(factors) = solved.solve(&Vector4::from_fn(|k, _| off[k])) else { continue };
+            let told: f64 =
+                terms(shares[TERMS]).iter().zip(&factors).map(|(term, factor)| term * factor).sum();
+            if (off[TERMS] - told).abs() <= SAME {
+                let share = b[place] / beside;
+                // Also where b is zero.
+                let rest = |power: f64| if power == 0.0 { 1.0 } else { Exponential::exp(ln(share) * power) };
+                let slope = |power: f64| power * rest(power - 1.0) / beside;
+                found[place].derivative =
+                    powers.iter().zip(&factors).map(|(power, factor)| slope(*power) * factor).sum();
             }
         }
         Ok(())
@@ -134,6 +151,21 @@ impl Quadrature<'_> {
 /// As what power of b an angle goes to its limit at a center that attracts as 1/rⁿ.
 fn left_out_power(power: f64) -> f64 {
     (2.0 * power / (2.0 - power)).min(1.0)
+}
+
+/// And the first of the powers that follow: products of b, of E/V at the turning point r₀, which goes as b^(2/(2−n)), and of
+/// r₀ itself, as which V changes its power.
+fn powers(power: f64) -> [f64; TERMS + 1] {
+    let turning = 2.0 / (2.0 - power);
+    let factors = [1.0, power * turning, turning];
+    let mut found = [0.0; TERMS + 1];
+    for at in 0..=TERMS {
+        // The least sum of one more factor that is beyond the last.
+        let last = if at == 0 { 0.0 } else { found[at - 1] };
+        let sums = [0.0].into_iter().chain(found).flat_map(|power| factors.map(|factor| power + factor));
+        found[at] = sums.filter(|sum| *sum > last + ONE_POWER).fold(f64::INFINITY, f64::min);
+    }
+    found
 }
 
 /// Where r²(1 − V/E) is `share`² of what it is at r₁, from V/E at r₁ and its power: by Newton's steps in ln r, of a function

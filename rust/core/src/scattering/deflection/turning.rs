@@ -104,7 +104,11 @@ pub(super) fn edges(profile: &Profile, energy: f64) -> Vec<Edge> {
     let rim = profile.pulling_rim(e);
     for r in radii.iter().step_by(2) {
         let rest = 1.0 - profile.value(*r) / e;
-        let b = if Some(*r) == rim { *r } else { r * rest.max(0.0).sqrt() };
+        // Nothing comes from outside to what is behind a wall.
+        if rest <= 0.0 {
+            break;
+        }
+        let b = if Some(*r) == rim { *r } else { r * rest.sqrt() };
         let hidden = edges.iter().any(|edge| edge.impact_parameter <= profile.give_length(b));
         if b > 0.0 && !hidden {
             let captures = matches!(critical.way(profile, e, b * (1.0 - 1e-9)), Way::Captured);

@@ -81,19 +81,27 @@ impl Circle {
     /// The scattering angles that lead to a laboratory angle in [0, π], each with the jacobian |dΩ/dΩ_lab|; the
     /// second exists for V > w only. Both jacobians are infinite at the greatest angle; no branch beyond it.
     pub fn branches(self, lab_angle: f64) -> [Option<(f64, f64)>; 2] {
+        let angle = |(along, across, jacobian): (f64, f64, f64)| (atan2(across, along), jacobian);
+        self.directions(lab_angle).map(|direction| direction.map(angle))
+    }
+    /// What the scattering angles of [`branches`](Self::branches) lack of π, with all digits where that is little.
+    pub fn complements(self, lab_angle: f64) -> [Option<f64>; 2] {
+        self.directions(lab_angle).map(|direction| direction.map(|(along, across, _)| atan2(across, -along)))
+    }
+
+    /// Along the beam and across it in the centre-of-mass frame, and the jacobian, of each branch.
+    fn directions(self, lab_angle: f64) -> [Option<(f64, f64, f64)>; 2] {
         if self.own == 0.0 {
-            let ahead = |cm_angle| (lab_angle == 0.0).then_some((cm_angle, f64::INFINITY));
-            return [ahead(0.0), ahead(PI)];
+            let ahead = |along| (lab_angle == 0.0).then_some((along, 0.0, f64::INFINITY));
+            return [ahead(1.0), ahead(-1.0)];
         }
         let Some(at) = self.speeds(lab_angle) else { return [None, None] };
-        let jacobian = |speed: f64| speed * speed / at.root;
         // The direction in the centre-of-mass frame has components (λ cos θ - γ, λ sin θ), where λ = γ cos θ ± S is
         // the laboratory speed in units of the frame's own.
-        let angle = |speed: f64, along: f64| atan2(speed * at.sine, along);
+        let direction = |speed: f64, along: f64| (along, speed * at.sine, speed * speed / at.root);
         let first = (at.fast >= 0.0 && !(self.slow == 0.0 && at.cosine < 0.0))
-            .then(|| (angle(at.fast, at.cosine * at.root - at.reach * at.sine), jacobian(at.fast)));
-        let second = (self.slow > 0.0)
-            .then(|| (angle(at.slow, -at.cosine * at.root - at.reach * at.sine), jacobian(at.slow)));
+            .then(|| direction(at.fast, at.cosine * at.root - at.reach * at.sine));
+        let second = (self.slow > 0.0).then(|| direction(at.slow, -at.cosine * at.root - at.reach * at.sine));
         [first, second]
     }
     /// (v/(V + w))² of a laboratory angle up to the greatest, of the faster branch and of the slower, if there is one.
