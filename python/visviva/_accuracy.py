@@ -34,6 +34,9 @@ _MANY_STEPS = 1_000
 _OF_TOLERANCE = 1e4
 """What many steps that follow `rtol` lose of an energy is not so many times it; what close passages multiply is."""
 
+_OF_STEEP_WALLS = 1e5
+"""In generalized coordinates, where a bounce off a steep wall takes many steps."""
+
 _WANTED = 1e-3
 """What the step that is named aims at."""
 
@@ -166,15 +169,23 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int, 
     return f"{problem}try {others[1]}, or at most {named}"
 
 
-def limit_of_energies(dt: float | None) -> float:
+def limit_of_energies(asked: dict[str, Any]) -> float:
     """The least error of an energy, in generalized coordinates, that is warned of: of equal steps, or chosen ones."""
-    return TOLERATED if dt is None else _UNRESOLVED
+    if asked["dt"] is not None:
+        return _UNRESOLVED
+    return min(TOLERATED, _OF_STEEP_WALLS * asked["rtol"]) if asked["atol"] is None else TOLERATED
 
 
-def warn_of_energy(dt: float | None, error: float, copy: int | None) -> None:
+def warn_of_energy(asked: dict[str, Any], error: float, copy: int | None) -> None:
     """Warn of a run in generalized coordinates of which a conserved energy at the end is off by as much."""
     whose = "" if copy is None else f"in copy {copy}, "
-    if dt is None:
+    dt = asked["dt"]
+    if error <= TOLERATED:
+        cause = (
+            f"{error / asked['rtol']:.0e} times rtol = {asked['rtol']:g}, to which each step is held: sharp bends, or "
+            "many steps, multiply it; try a smaller rtol, or another method (dop853)"
+        )
+    elif dt is None:
         cause = (
             "something that is shorter than a step was passed over, or the tolerance does not resolve this motion; "
             "give a max_step below the time that its narrowest part takes, or a smaller rtol"

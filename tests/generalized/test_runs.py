@@ -181,10 +181,35 @@ def test_a_valley_of_two_planes_is_crossed_where_it_bends(factor: float) -> None
     assert (copies.position[0] == out.position).all()
 
 
+@pytest.mark.parametrize(
+    ("root", "power"),
+    [
+        (lambda x: (x**4) ** 0.25, 1.0),
+        (lambda x: (3.0 * x * x) ** 0.5 / np.sqrt(3.0), 1.0),
+        (lambda x: (x * x) ** 0.75, 1.5),
+        (lambda x: (x**4) ** 0.625, 2.5),
+    ],
+)
+def test_a_root_of_an_even_power_has_the_kink_of_an_absolute_value(root: Any, power: float) -> None:
+    """The step made for smooth motions stood still there, or went over it: 1e-4 off at t = 1000, energy and all."""
+    written = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - root(q[0]), ["x"], position=[1.0])
+    plain = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - abs(q[0]) ** power, ["x"], position=[1.0])
+    assert written.plan(t=1.0).method == "dop853"
+    times = [5.0, 20.0, 100.0]
+    one, other = written.run(times), plain.run(times)
+    # Each passage costs a step's tolerance, which its square root makes of a time; measured 2e-8.
+    assert np.allclose(one.position, other.position, rtol=0.0, atol=2e-7)
+    with pytest.raises(vv.InvalidInput, match="where an absolute value turns"):
+        written.run(1.0, method="gauss16")
+
+
 def test_roots_that_have_no_kink_are_none() -> None:
     for function in (
         lambda q, v, t, k: v[0] ** 2 / 2 - np.sqrt(q[0] ** 2 + k),
         lambda q, v, t, k: v[0] ** 2 / 2 - abs(k) * q[0] ** 4,
+        lambda q, v, t, k: v[0] ** 2 / 2 - k * np.sqrt(q[0] ** 4),
+        lambda q, v, t, k: v[0] ** 2 / 2 - k * (q[0] ** 8) ** 0.25,
+        lambda q, v, t, k: v[0] ** 2 / 2 - (1.0 + q[0] ** 2) ** 0.75,
     ):
         smooth = vv.Lagrangian(function, ["x"], parameters={"k": 2.0}, position=[1.0])
         assert smooth.plan(t=1.0).method == "gauss16"

@@ -254,7 +254,7 @@ def test_refusals(argument: str, message: str, call: object) -> None:
 def test_both_branches_of_small_recoils_keep_their_digits(angle: float) -> None:
     """Where something is taken up a recoil has two; recoil_angle, which both lead back to, is exact in small angles."""
     how = {"mass_ratio": 0.0376, "beam_energy": 0.277, "q_value": -0.091}
-    for found in s.cm_angle_from_recoil(angle, **how):
-        assert s.recoil_angle(found, **how) == pytest.approx(angle, rel=1e-14, abs=0.0)
-        # A complement of π has that many digits only.
-        assert found < 1.0 or angle > 0.01
+    ahead, back = s.cm_angle_from_recoil(angle, **how)
+    assert s.recoil_angle(back, **how) == pytest.approx(angle, rel=1e-14, abs=0.0)
+    # Beside π an angle has as many digits as that.
+    assert s.recoil_angle(ahead, **how) == pytest.approx(angle, rel=1e-14, abs=1e-15)

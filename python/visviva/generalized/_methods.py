@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from visviva import _core
 from visviva._keywords import did_you_mean
 from visviva.errors import InvalidInput
 
@@ -125,16 +126,27 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
         raise InvalidInput("dt", f"{method} chooses its own steps; leave dt out")
     if not kind.adaptive and dt is None:
         raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")
-    splits = not kind.adaptive and "a" not in kind.coefficients
-    if splits and not system._structure["separable"]:
+    _check_splitting(method, system)
+    return method
+
+
+def _check_splitting(method: str, system: States) -> None:
+    """Refuse kicks and drifts where they make no method."""
+    [asks] = [row["asks"] for row in _core.methods() if row["name"] == method]
+    if asks is None:
+        return
+    found = system._structure
+    if not found["separable"]:
         raise InvalidInput(
             "method",
-            f"{method} needs accelerations that do not depend on velocities (H = p²/2 + V(q)); here they do. gauss16 "
+            f"{method} needs accelerations that do not depend on velocities, or H = T(p) + V(q); here they do. gauss16 "
             "is symplectic all the same; dop853 works too",
         )
-    if splits and system._constraints():
+    if not found[asks]:
+        form = "H = T(p) + V(q) with T quadratic in p" if asks == "nystrom" else "H = p²/2 + V(q), or a Lagrangian"
+        raise InvalidInput("method", f"{method} needs {form}; here yoshida4, kahan_li8 and gauss16 are symplectic")
+    if system._constraints():
         raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
-    return method
 
 
 def _check_linear(system: States, dt: float | None) -> None:

@@ -144,19 +144,22 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     system._check_start()
     model, neighbors = system._model.variational(), _Neighbors(system)
     parts = max(1, round(abs(t - system.t0) / interval))
-    times = np.linspace(system.t0, t, parts + 1)
     state = system._start()
     frame = neighbors.directions(system.t0, state)
     several = frame.shape[1]
     sums = np.zeros(several)
     if not several:
         return sums
-    # Parts that are still to come, the next one last.
-    pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
-    shortest = 1e-6 * abs(t - system.t0) / parts
+    # What is still to come of the part, the next last.
+    pending: list[tuple[float, float]] = []
+    part, each = 0, (t - system.t0) / parts
+    shortest = 1e-6 * abs(each)
     reached = system.t0
     try:
-        while pending:
+        while pending or part < parts:
+            if not pending:
+                part += 1
+                pending.append((reached, t if part == parts else system.t0 + part * each))
             begin, end = pending.pop()
             asked = {
                 "method": "gauss16",

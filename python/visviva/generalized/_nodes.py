@@ -43,6 +43,8 @@ _LEAPS = {
 } | {name: _WHOLE.format(name) for name in ("floor", "ceil", "trunc", "rint", "round")}
 #: What is bent where its arguments meet.
 _BENT = {"maximum": _LARGER, "fmax": _LARGER, "minimum": _SMALLER, "fmin": _SMALLER}
+#: What is the same as another of floats.
+_OF_FLOATS = {np.fabs: np.absolute, np.float_power: np.power}
 _NUMPY = {
     "arcsin": "asin",
     "arccos": "acos",
@@ -341,6 +343,7 @@ class Expression:
                 f"{ufunc.__name__} is bent where its arguments meet, and the function must not branch on coordinates; "
                 f"{_BENT[ufunc.__name__]}"
             )
+        ufunc = _OF_FLOATS.get(ufunc, ufunc)
         # NumPy asks the first argument for these, which may be a number.
         if ufunc in (np.arctan2, np.hypot):
             inputs = tuple(self._with("product", 0.0)._with("sum", x) if np.isscalar(x) else x for x in inputs)

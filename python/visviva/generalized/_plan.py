@@ -65,7 +65,7 @@ class GeneralizedPlan(Shown):
             ("time", "does not enter" if found["autonomous"] else "enters"),
             ("conserved", ", ".join(system.conserved) or "nothing that the expressions tell"),
             ("mass matrix", _MASS[found["mass_matrix"]]),
-            ("accelerations", "of places alone" if found["separable"] else "of velocities, too"),
+            ("accelerations", "of places alone" if found["nystrom"] else "of velocities, too"),
             ("operations", f"{found['operations']} per evaluation, for eight states at once"),
             ("equations", "linear, with constant coefficients" if found["linear"] else "not linear"),
             *([("kinks", "an absolute value, which turns within a step")] if found["kinks"] else []),

@@ -110,7 +110,9 @@ class Runs(States):
             raise InvalidInput(
                 "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
             )
-        steps = np.diff(outputs, prepend=self.t0) * (1.0 if outputs[-1] >= self.t0 else -1.0)
+        steps = np.diff(outputs, prepend=self.t0)
+        # The first that is not the start tells the direction.
+        steps *= next((np.sign(step) for step in steps if step), 1.0)
         if (steps < 0.0).any():
             wrong = int(np.argmax(steps < 0.0))
             before = outputs[wrong - 1] if wrong else self.t0

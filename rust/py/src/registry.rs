@@ -12,6 +12,7 @@ use visviva_core::forces::ForceTerm;
 use visviva_core::forces::term::Coupling;
 use visviva_core::memory::reserved;
 use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::ode::Scheme;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
@@ -40,6 +41,14 @@ pub(crate) fn methods(py: Python<'_>, rigid: bool) -> PyResult<Vec<Bound<'_, PyD
             coefficients.set_item(name, rows.into_iter().map(numbers).collect::<Vec<_>>())?;
         }
         dict.set_item("coefficients", coefficients)?;
+        // What it asks of equations in generalized coordinates, by the name of what is found about them.
+        let asks = match method.scheme {
+            Scheme::Splitting(_) => Some("separable"),
+            Scheme::NystromSplitting(_) => Some("nystrom"),
+            Scheme::Boris(_) | Scheme::Multistep(_) => Some("second_order"),
+            Scheme::RungeKutta(_) | Scheme::Embedded(_) | Scheme::Taylor(_) => None,
+        };
+        dict.set_item("asks", asks)?;
         Ok(dict)
     };
     let own = registry::BODY_METHODS.iter().map(|(method, _)| *method);

@@ -111,6 +111,16 @@ pub enum Output {
     Unknown(u32),
 }
 
+impl Output {
+    /// The expression, if it is one.
+    pub fn node(&self) -> Option<Id> {
+        match self {
+            Self::Node(id) => Some(*id),
+            Self::Unknown(_) => None,
+        }
+    }
+}
+
 /// Operations, those of parameters alone first.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
@@ -142,10 +152,7 @@ pub(super) fn write(
     systems: &[LinearSystem],
     outputs: &[Output],
 ) -> Result<Program> {
-    let nodes = outputs.iter().filter_map(|output| match output {
-        Output::Node(id) => Some(*id),
-        Output::Unknown(_) => None,
-    });
+    let nodes = outputs.iter().filter_map(Output::node);
     let roots: Vec<Id> = systems.iter().flat_map(LinearSystem::nodes).chain(nodes).collect();
     let mut uses: HashMap<Id, u32> = HashMap::new();
     for id in graph.reachable(&roots) {

@@ -44,10 +44,7 @@ impl LinearMotion {
             return None;
         }
         let masses = model.source.kind == Kind::Lagrangian;
-        let rates = model.rates.iter().map(|rate| match rate {
-            Output::Node(id) => Some(*id),
-            Output::Unknown(_) => None,
-        });
+        let rates = model.rates.iter().map(Output::node);
         let right = if masses { model.right.clone() } else { rates.collect::<Option<Vec<Id>>>()? };
         let mut graph = model.source.graph.clone();
         let varies =

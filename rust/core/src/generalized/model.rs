@@ -163,15 +163,11 @@ impl Model {
         let graph = &mut self.source.graph;
         let (time, one) = (graph.time(), graph.constant(1.0));
         let mut motion: HashMap<Id, Id> = HashMap::from([(time, one)]);
-        let node = |rate: &Output| match rate {
-            Output::Node(id) => Some(*id),
-            Output::Unknown(_) => None,
-        };
         let (mut slopes, mut rates) = (vec![], vec![]);
         match self.form {
             Form::FirstOrder(_) => {
                 for (&number, rate) in first.iter().chain(&second).zip(&self.rates) {
-                    let _ = node(rate).and_then(|rate| motion.insert(number, rate));
+                    let _ = rate.node().and_then(|rate| motion.insert(number, rate));
                 }
             }
             Form::SecondOrder(_) => {
@@ -216,11 +212,7 @@ impl Model {
     pub(super) fn roots(&self) -> Vec<Id> {
         let of_systems =
             self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
-        let of_rates = self.rates.iter().filter_map(|rate| match rate {
-            Output::Node(id) => Some(id),
-            Output::Unknown(_) => None,
-        });
-        of_systems.chain(of_rates).copied().collect()
+        of_systems.copied().chain(self.rates.iter().filter_map(Output::node)).collect()
     }
 
     /// What its equations look at.

@@ -3,7 +3,8 @@
 use super::model::{Kind, Model, Source};
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Dependence, number};
-use crate::expressions::{Id, Node};
+use crate::expressions::program::Output;
+use crate::expressions::{Graph, Id, Node};
 
 /// What is known of a mass matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +32,12 @@ pub struct Structure {
     pub conserves_energy: bool,
     /// The mass matrix.
     pub mass: MassMatrix,
-    /// Whether accelerations depend on places and time alone: kicks and drifts make a method.
+    /// Whether kicks and drifts make a method: accelerations depend on places and time alone, or H = T(p) + V(q, t).
     pub separable: bool,
+    /// And whether drifts are as long as T quadratic in p makes them, on which Nyström's methods rely.
+    pub nystrom: bool,
+    /// Whether velocities are what moves coordinates, and half of a state.
+    pub second_order: bool,
     /// Whether something has a kink: |x| = √(x²) of what changes with the state, where it passes zero.
     pub kinks: bool,
     /// Whether the kinetic energy is quadratic in velocities: the mass matrix does not have them.
@@ -69,17 +74,43 @@ impl Structure {
                 graph.any(&source.holonomic, number(i)) || graph.any(&source.nonholonomic, number(n + i));
             graph.is_zero(model.slopes[i]) && !pushed && !damped && !bound
         });
-        let needs = model.needs();
+        let second_order = matches!(model.form, crate::ode::system::Form::SecondOrder(_));
+        let separable = if second_order { !model.needs().velocity } else { Self::separates(model) };
         Self {
             cyclic: cyclic.collect(),
             autonomous,
             conserves_energy,
             mass: Self::mass_matrix(model),
-            separable: matches!(model.form, crate::ode::system::Form::SecondOrder(_)) && !needs.velocity,
+            separable,
+            nystrom: separable && (second_order || Self::drifts_are_linear(model)),
+            second_order,
             kinks: !Self::turning(source).is_empty(),
             quadratic: Self::is_quadratic(model),
             operations: model.code.operations(),
         }
+    }
+
+    /// Whether velocities ∂H/∂p look at momenta alone, and the rates of these at places and time.
+    fn separates(model: &Model) -> bool {
+        let n = model.source.coordinates as u32;
+        if model.source.kind != Kind::Hamiltonian {
+            return false;
+        }
+        let looks = |roots: &[Id], at: &dyn Fn(&Node) -> bool| model.source.graph.any(roots, |node| at(node));
+        let (_, kicks) = model.rates.split_at(n as usize);
+        let kicks: Vec<Id> = kicks.iter().filter_map(Output::node).collect();
+        let is_place =
+            |node: &Node| matches!(node, Node::Time) || matches!(node, Node::Variable(i) if *i < n);
+        let is_momentum = |node: &Node| matches!(node, Node::Variable(i) if *i >= n);
+        !looks(&model.conjugates, &is_place) && !looks(&kicks, &is_momentum)
+    }
+
+    fn drifts_are_linear(model: &Model) -> bool {
+        let mut source = model.source.clone();
+        let (_, momenta) = source.halves();
+        let slopes: Vec<Id> =
+            model.conjugates.iter().flat_map(|&velocity| source.graph.gradient(velocity, &momenta)).collect();
+        slopes.iter().all(|&slope| source.graph.dependence(slope) <= Dependence::Parameters)
     }
 
     fn is_quadratic(model: &Model) -> bool {
@@ -96,20 +127,33 @@ impl Structure {
         all.extend(source.holonomic.iter().chain(&source.nonholonomic));
         all.push(source.function);
         let turning = |id: Id| {
-            let &Node::Call(Function::Sqrt, mut under) = graph.node(id) else { return None };
-            // A square that has a factor.
-            while let Node::Sum(constant, terms) = graph.node(under)
-                && number(*constant) == 0.0
-                && let [(_, only)] = **terms
-            {
-                under = only;
-            }
-            match *graph.node(under) {
-                Node::Product(a, b) if a == b && graph.dependence(a) > Dependence::Parameters => Some(a),
-                _ => None,
-            }
+            let (under, exponent) = match graph.node(id) {
+                Node::Call(Function::Sqrt, under) => (*under, 0.5),
+                Node::Power(under, exponent) => (*under, number(*exponent)),
+                _ => return None,
+            };
+            let (base, power) = Self::even_power(graph, under);
+            // Of x², x⁴ and so on there is a root that has no kink, and of none without one.
+            let turns = power > 1.0 && power * exponent > 0.0 && (power * exponent) % 2.0 != 0.0;
+            (turns && graph.dependence(base) > Dependence::Parameters).then_some(base)
         };
         graph.reachable(&all).into_iter().filter_map(turning).collect()
+    }
+
+    /// x of x², x⁴ and so on, which may have a factor, and that power; of all else itself, and one.
+    fn even_power(graph: &Graph, mut id: Id) -> (Id, f64) {
+        let mut power = 1.0;
+        loop {
+            let (base, more) = match graph.node(id) {
+                Node::Sum(constant, terms) if number(*constant) == 0.0 && terms.len() == 1 => {
+                    (terms[0].1, 1.0)
+                }
+                Node::Product(a, b) if a == b => (*a, 2.0),
+                Node::Power(a, exponent) if number(*exponent) % 2.0 == 0.0 => (*a, number(*exponent)),
+                _ => return (id, power),
+            };
+            (id, power) = (base, power * more);
+        }
     }
 
     fn mass_matrix(model: &Model) -> MassMatrix {

@@ -24,6 +24,7 @@ mod order_conditions;
 pub mod passes;
 pub mod run;
 pub mod runge_kutta;
+pub mod separated;
 pub mod series;
 pub mod splitting;
 pub mod state;

@@ -16,16 +16,16 @@ use crate::parallel::Ticker;
 
 /// The kicks and drifts of a step.
 #[derive(Debug)]
-struct Moves<S> {
-    table: &'static Splitting,
+pub(super) struct Moves<S> {
+    pub(super) table: &'static Splitting,
     /// `kick[i]`, then `drift[i]`, and the time of the kick after the start of the step.
-    pairs: Vec<(Scaled<S>, Scaled<S>, S)>,
-    last_kick: Scaled<S>,
-    h: S,
+    pub(super) pairs: Vec<(Scaled<S>, Scaled<S>, S)>,
+    pub(super) last_kick: Scaled<S>,
+    pub(super) h: S,
 }
 
 impl<S: Element> Moves<S> {
-    fn new(table: &'static Splitting, h: f64) -> Self {
+    pub(super) fn new(table: &'static Splitting, h: f64) -> Self {
         let nothing = (S::zero(), S::zero());
         let pairs = vec![(nothing, nothing, S::zero()); table.drifts.len()];
         let mut moves = Self { table, pairs, last_kick: nothing, h: S::zero() };
@@ -33,7 +33,7 @@ impl<S: Element> Moves<S> {
         moves
     }
 
-    fn set(&mut self, h: f64) {
+    pub(super) fn set(&mut self, h: f64) {
         let h = S::splat(h);
         let mut drifted = DoubleDouble::zero();
         let coefficients = self.table.kicks.iter().zip(self.table.drifts);

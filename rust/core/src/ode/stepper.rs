@@ -6,9 +6,10 @@
 use super::boris::BorisStep;
 use super::multistep::MultistepStep;
 use super::runge_kutta::RungeKuttaStep;
+use super::separated::SeparatedStep;
 use super::splitting::SplittingStep;
 use super::state::State;
-use super::system::System;
+use super::system::{Form, System};
 use super::{Method, Scheme};
 use crate::error::{Error, Result};
 use crate::numerics::element::Element;
@@ -165,9 +166,10 @@ pub fn stepper<S: Element>(
     }
     Ok(match &method.scheme {
         Scheme::Boris(table) => Box::new(BorisStep::new(table, h, system)),
-        Scheme::Splitting(table) | Scheme::NystromSplitting(table) => {
-            Box::new(SplittingStep::new(table, h, system))
-        }
+        Scheme::Splitting(table) | Scheme::NystromSplitting(table) => match system.form() {
+            Form::SecondOrder(_) => Box::new(SplittingStep::new(table, h, system)),
+            Form::FirstOrder(_) => Box::new(SeparatedStep::new(table, h, system)),
+        },
         Scheme::RungeKutta(tableau) => Box::new(RungeKuttaStep::new(tableau, h, system, state)),
         Scheme::Multistep(table) => Box::new(MultistepStep::new(table, h, system, state)),
         Scheme::Embedded(_) | Scheme::Taylor(_) => {
@@ -179,7 +181,7 @@ pub fn stepper<S: Element>(
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::ode::system::{Form, Needs};
+    use crate::ode::system::Needs;
     use crate::parallel::Control;
     use crate::registry::METHODS;
 

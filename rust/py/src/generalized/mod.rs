@@ -117,6 +117,8 @@ impl GeneralizedModel {
         result.set_item("mass_matrix", mass)?;
         result.set_item("linear", self.linear.is_some())?;
         result.set_item("separable", found.separable)?;
+        result.set_item("nystrom", found.nystrom)?;
+        result.set_item("second_order", found.second_order)?;
         result.set_item("kinks", found.kinks)?;
         result.set_item("quadratic", found.quadratic)?;
         result.set_item("operations", found.operations)?;
@@ -138,13 +140,7 @@ impl GeneralizedModel {
             "slopes" => model.slopes.clone(),
             "energy" => vec![model.energy],
             "mass_matrix" => model.mass.iter().flatten().copied().collect(),
-            "rates" => {
-                let nodes = model.rates.iter().filter_map(|rate| match rate {
-                    Output::Node(id) => Some(*id),
-                    Output::Unknown(_) => None,
-                });
-                nodes.collect()
-            }
+            "rates" => model.rates.iter().filter_map(Output::node).collect(),
             _ => return Err(raised(py, Error::Internal(format!("no expressions {name}")))),
         };
         Ok(shown(&model.source.graph, &roots))
