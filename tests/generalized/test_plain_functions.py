@@ -73,7 +73,6 @@ REFUSED: dict[str, tuple[Function, str]] = {
     "heaviside": (lambda q, v, t: v @ v - np.heaviside(q[0], 0), "/ 2, which steps follow"),
     "heaviside of an array": (lambda q, v, t: v @ v - np.heaviside(q, 0).sum(), "tanh"),
     "sign": (lambda q, v, t: v @ v - np.sign(q[0]), "np.tanh(x / width), which steps follow"),
-    "float_power": (lambda q, v, t: v @ v - np.float_power(q[0], 2), "Functions that the core knows: sin"),
     "nextafter": (lambda q, v, t: v @ v - np.nextafter(q[0], 1), "Functions that the core knows: sin"),
     "copysign": (lambda q, v, t: v @ v - np.copysign(1, q[0]), "Functions that the core knows: sin"),
 }
@@ -95,3 +94,12 @@ def test_errors_of_ones_own_are_ones_own() -> None:
     with pytest.raises(TypeError, match="no len") as raised:
         vv.Lagrangian(wrong, ["x"])
     assert not isinstance(raised.value, vv.Error)
+
+
+def test_functions_of_floats_are_those_of_numbers() -> None:
+    for of_floats, of_numbers in ((np.fabs, np.abs), (lambda x: np.float_power(x, 3.0), lambda x: x**3)):
+        one, other = (
+            vv.Lagrangian(lambda q, v, t, f=f: v[0] ** 2 / 2 - f(q[0]), ["x"], position=[1.0]).run(1.0)
+            for f in (of_floats, of_numbers)
+        )
+        assert np.array_equal(one.position, other.position)

@@ -177,11 +177,11 @@ def test_steps_that_follow_a_tolerance_but_lose_more_say_so() -> None:
     with pytest.warns(vv.AccuracyWarning, match=r"times rtol = 1e-12, .*sharp bends.*dop853"):
         bead.run(20.0)
     with pytest.warns(vv.AccuracyWarning, match=r"in copy 1, .* times rtol = 1e-12"):
-        bead.ensemble(position=[[1.0, 0.1], [1.0, 0.0]]).run(20.0)
-    # Beside it, and by steps that notice, it does not.
+        bead.ensemble(position=[[1.0, 1.0], [1.0, 0.0]], velocity=[[0.0, 1.0], [0.0, 0.0]]).run(20.0)
+    # Far from it, and by steps that notice, it does not.
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        bead.ensemble(position=[[1.0, 0.1]]).run(20.0)
+        bead.ensemble(position=[[1.0, 1.0]], velocity=[[0.0, 1.0]]).run(20.0)
         bead.run(20.0, method="dop853")
 
 

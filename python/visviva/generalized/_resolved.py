@@ -176,13 +176,16 @@ def _is_plainly_kept(done: _Done) -> bool:
 
 def _rounding(done: _Done, copy: int) -> float:
     """What rounding of the state at the end, and of the sum that its energy is, makes of that."""
-    # On a way so short that the energy is straight there, what is left of it is the rounding of its terms.
-    parts = np.arange(-4, 5) / 2.0**46
-    states = done.lasts[0][copy] * (1.0 + parts[:, None])
-    energies, _ = _energies(done.system, np.full(9, done.lasts[1]), states, np.tile(done.values[copy], (9, 1)))
-    steps = np.diff(energies)
-    told = float(np.abs(np.diff(steps)).max() + np.abs(steps).max() / 2.0**6)
-    return _ROUNDINGS * told if np.isfinite(told) else 0.0
+    from visviva.generalized._calculus import Calculus
+    from visviva.generalized._rounding import rounding_of
+
+    c, ((states, t), start) = Calculus(done.system), (done.lasts, done.starts[copy])
+    last = states[copy]
+    beside = np.stack([last, np.nextafter(last, np.inf), np.nextafter(last, -np.inf)])
+    energies, _ = _energies(done.system, np.full(3, t), beside, np.tile(done.values[copy], (3, 1)))
+    of_state = float(np.abs(energies[1:] - energies[0]).max())
+    of_sum = rounding_of(c, c.of_system("energy"), np.array([done.system.t0, t]), np.stack([start, last])).sum()
+    return _ROUNDINGS * of_state + float(of_sum)
 
 
 def _largest(done: _Done, copy: int) -> float:
