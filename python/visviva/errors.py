@@ -242,13 +242,15 @@ class Interrupted(KeyboardInterrupt):
 
     A `KeyboardInterrupt` and nothing else: neither ``except Exception`` nor ``except visviva.Error`` catches it.
 
+    Units: of what it holds, as of a run that was not interrupted.
+
     Parameters
     ----------
     message : str, optional
         What was stopped.
     trajectory : Trajectory, optional
         What was computed until then.
-    result : MonteCarlo, FoilResult, PoincareSection or ndarray, optional
+    result : MonteCarlo, FoilResult, PoincareSection or ndarray, shape (2n,), optional
         The events that a Monte Carlo counted until then, the points of a section, or the Lyapunov exponents of the
         motion up to then.
 
