@@ -246,7 +246,6 @@ def counts(threads: int) -> list[int]:
     return all_counts
 
 
-@pytest.mark.xfail(raises=vv.InvalidInput, reason="its table is 4e-5 off beside an edge, and refused")
 def test_events_of_narrow_shells() -> None:
     """Tables are certified beside shells, too; the counts are those of any threads and any tier."""
     one = counts(1)
