@@ -27,7 +27,7 @@ TIGHTEST, _LOOSER = 2.3e-14, 1e-13
 _SECONDS, _WHOLE = 0.03, 1.0
 # Errors are looked at so many times: what a method loses in an encounter it may have back soon after. Of many bodies,
 # whose energies take as long as steps, at fewer.
-_MOST_OUTPUTS, _FEWEST_OUTPUTS, _PAIRS = 1024, 32, 1 << 16
+_MOST_OUTPUTS, _FEWEST_OUTPUTS, _PAIRS = 256, 32, 1 << 14
 # Of these it is made: by the first of those that are equally sure.
 _REFERENCES = ("dop853", "verner98", "taylor")
 
@@ -153,12 +153,17 @@ def _referred(
 def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
     """The columns of a stretch, its steps and seconds; None if refused, warned of or ended early."""
     try:
-        result, seconds = run_stretch(cast("_core._Request", asked | {"record": columns}), fraction, _outputs(asked))
+        request = cast("_core._Request", asked | {"record": columns})
+        result, seconds = run_stretch(request, fraction, _FEWEST_OUTPUTS)
+        if result["error"] or result["status"].any() or resolves_nothing(result):
+            return None
+        steps, outputs = result["stats"]["steps"], _outputs(asked)
+        if outputs > _FEWEST_OUTPUTS:
+            # Between nodes each output may take a step of its own, which is none of the run's.
+            result, _ = run_stretch(request, fraction, outputs)
     except InvalidInput:
         return None
-    if result["error"] or result["status"].any() or resolves_nothing(result):
-        return None
-    return result["columns"], result["stats"]["steps"], seconds
+    return result["columns"], steps, seconds
 
 
 def _outputs(asked: dict[str, Any]) -> int:

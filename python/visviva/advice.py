@@ -54,7 +54,7 @@ class Option(Record):
     how : dict
         Arguments for ``run``: ``method``, and ``dt`` or ``rtol``.
     error : float
-        What the run is expected to be off, relative, without dimension: at most, at up to 1024 times.
+        What the run is expected to be off, relative, without dimension: at most, at up to 256 times.
     steps : int
     seconds : float
         What it is expected to take, in seconds.

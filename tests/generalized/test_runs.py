@@ -210,6 +210,9 @@ def test_roots_that_have_no_kink_are_none() -> None:
         lambda q, v, t, k: v[0] ** 2 / 2 - k * np.sqrt(q[0] ** 4),
         lambda q, v, t, k: v[0] ** 2 / 2 - k * (q[0] ** 8) ** 0.25,
         lambda q, v, t, k: v[0] ** 2 / 2 - (1.0 + q[0] ** 2) ** 0.75,
+        lambda q, v, t, k: v[0] ** 2 / 2 - ((1.0 + q[0] ** 2) ** 2) ** 0.75,
+        lambda q, v, t, k: v[0] ** 2 / 2 - np.sqrt(np.cosh(q[0]) ** 2),
+        lambda q, v, t, k: v[0] ** 2 / 2 - ((1.0 + t * t) ** 2) ** 0.25 * q[0] ** 2,
     ):
         smooth = vv.Lagrangian(function, ["x"], parameters={"k": 2.0}, position=[1.0])
         assert smooth.plan(t=1.0).method == "gauss16"

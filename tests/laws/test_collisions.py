@@ -286,6 +286,15 @@ def test_bounces_count_the_digits_of_pi(digits: int) -> None:
     assert out.velocity[-1, 2, 0] == pytest.approx(1.0, rel=4.0 / heavy, abs=0.0)
 
 
+def test_elastic_balls_on_a_heavy_one_rest() -> None:
+    """They part by less than their roundings, by turns: neither is thrown to and fro."""
+    places = [[0, 0, 0], [0, 1.5, 0], [1.5, 0, 0]]
+    scene = spheres([1.0, 1e-6, 1e-6], places, np.zeros((3, 3)), [1.0, 0.5, 0.5], vv.Gravity(G=1.0))
+    with pytest.raises(vv.ConvergenceError, match="rest") as caught:
+        scene.run(5.0, collisions="bounce")
+    assert len(caught.value.trajectory.collisions) < 10_000
+
+
 def test_a_fast_ball_between_slow_walls_bounces_on() -> None:
     """Thousands of bounces, each harder and sooner, tell of no end while the walls are far apart: they meet at 1.5."""
     places, speeds = [[-2.0, 0, 0], [2.0, 0, 0], [0.1, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [1e5, 0, 0]]

@@ -170,6 +170,8 @@ def test_angles_beside_a_center_that_attracts_slowly_only_rise(n: float) -> None
     b = np.logspace(-26.0, -6.0, 11)
     slopes = S.deflect(PowerLaw(-1.0, n), energy=1.0, impact_parameter=b).derivative
     assert (slopes > 0.0).all()
+    screened = Custom(lambda r: -np.exp(-r) / r**n)
+    assert S.deflect(screened, energy=1.0, impact_parameter=0.0).derivative > 0.0
 
 
 @pytest.mark.parametrize(("n", "b"), [(0.5, 1e-12), (0.5, 1e-20), (0.9, 1e-9), (0.9, 1e-18)])

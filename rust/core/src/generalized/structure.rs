@@ -3,6 +3,7 @@
 use super::model::{Kind, Model, Source};
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Dependence, number};
+use crate::expressions::intervals::{Interval, Intervals};
 use crate::expressions::program::Output;
 use crate::expressions::{Graph, Id, Node};
 
@@ -134,8 +135,15 @@ impl Structure {
             };
             let (base, power) = Self::even_power(graph, under);
             // Of x², x⁴ and so on there is a root that has no kink, and of none without one.
-            let turns = power > 1.0 && power * exponent > 0.0 && (power * exponent) % 2.0 != 0.0;
-            (turns && graph.dependence(base) > Dependence::Parameters).then_some(base)
+            let bent = power > 1.0 && power * exponent > 0.0 && (power * exponent) % 2.0 != 0.0;
+            let turns = || {
+                // Whatever the parameters and the time are.
+                let (anything, unknown) = (Interval::at(f64::NAN), vec![f64::NAN; source.parameters]);
+                let state = vec![anything; 2 * source.coordinates];
+                let bounds = Intervals::new(graph.clone(), vec![base]).over(f64::NAN, &state, &unknown);
+                bounds.values.iter().any(|values| values.low < 0.0)
+            };
+            (bent && graph.dependence(base) > Dependence::Parameters && turns()).then_some(base)
         };
         graph.reachable(&all).into_iter().filter_map(turning).collect()
     }

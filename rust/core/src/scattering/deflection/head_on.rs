@@ -103,11 +103,12 @@ impl Quadrature<'_> {
                 terms(shares[TERMS]).iter().zip(&factors).map(|(term, factor)| term * factor).sum();
             if (off[TERMS] - told).abs() <= SAME {
                 let share = b[place] / beside;
-                // Also where b is zero.
+                // Where b is zero the first term is all that counts, infinite or not.
+                let count = if share == 0.0 { 1 } else { TERMS };
                 let rest = |power: f64| if power == 0.0 { 1.0 } else { Exponential::exp(ln(share) * power) };
                 let slope = |power: f64| power * rest(power - 1.0) / beside;
-                found[place].derivative =
-                    powers.iter().zip(&factors).map(|(power, factor)| slope(*power) * factor).sum();
+                let terms = powers.iter().zip(&factors).take(count);
+                found[place].derivative = terms.map(|(power, factor)| slope(*power) * factor).sum();
             }
         }
         Ok(())

@@ -18,12 +18,8 @@ use std::collections::BTreeMap;
 /// Spheres rest on each other that part by less than this part of their radii,
 const REST: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// so many times in succession, with nobody else in between: …
+/// so many times in succession.
 const RESTS: u32 = 16;
-
-/// … what has a mass and is thrown to and fro by two others that keep their energy turns them back after π/2 √(M/m) bounces
-/// (G. Galperin, Regul. Chaotic Dyn. 8 (2003) 375), and comes as near to them before.
-const THROWN: u32 = 1 << 17;
 
 /// Impulses at one time after which bodies are pressed together, for each pair in contact.
 const IMPULSES: usize = 1000;
@@ -57,8 +53,6 @@ pub(super) struct Member {
     pub(super) copy: usize,
     rule: Collisions,
     met: BTreeMap<(usize, usize), Met>,
-    /// Whom each body met last.
-    partner: Vec<Option<usize>>,
     squeezed: Squeezed,
     /// How often each event was found.
     pub(super) found: Vec<u64>,
@@ -88,7 +82,6 @@ impl Member {
             copy,
             rule,
             met: BTreeMap::new(),
-            partner: vec![None; scene.particles],
             squeezed: Squeezed::default(),
             found: vec![0; request.events.len()],
         };
@@ -277,7 +270,7 @@ impl Member {
                 return true;
             }
             for (collision, speed) in self.bodies.bounce_together(&pairs, restitution, t) {
-                let (pair, speeds) = (collision.bodies, (collision.speed, speed));
+                let (pair, met_with) = (collision.bodies, collision.speed);
                 let squeezed = self.squeezed.note(&self.bodies, &collision, elapsed);
                 self.put(collision);
                 if squeezed {
@@ -287,12 +280,10 @@ impl Member {
                 if found.take_if(|found| *found == pair).is_none() {
                     let rests = self.met.get(&pair).map_or(0, |met| met.rests);
                     let _ = self.met.insert(pair, Met { elapsed, speed, rests });
-                } else if self.rests(pair, speeds, restitution) {
+                } else if self.rests(pair, met_with, speed) {
                     self.outcome.ending = Ending::Resting { bodies: pair };
                     return false;
                 }
-                let (i, j) = pair;
-                (self.partner[i], self.partner[j]) = (Some(j), Some(i));
             }
         }
         let bodies = touching.first().copied().unwrap_or_default();
@@ -301,7 +292,7 @@ impl Member {
     }
 
     /// Takes note of a bounce; whether the two have come to rest on each other.
-    fn rests(&mut self, pair: (usize, usize), (met_with, parted_with): (f64, f64), restitution: f64) -> bool {
+    fn rests(&mut self, pair: (usize, usize), met_with: f64, parted_with: f64) -> bool {
         let elapsed = self.elapsed();
         let sum = self.bodies.radius[pair.0] + self.bodies.radius[pair.1];
         let rests = self.met.get(&pair).map_or(0, |met| {
@@ -310,8 +301,7 @@ impl Member {
             if apart <= REST * sum { met.rests + 1 } else { 0 }
         });
         let _ = self.met.insert(pair, Met { elapsed, speed: parted_with, rests });
-        let alone = self.partner[pair.0] == Some(pair.1) && self.partner[pair.1] == Some(pair.0);
-        rests >= if alone || restitution < 1.0 { RESTS } else { THROWN }
+        rests >= RESTS
     }
 
     fn merge(&mut self, pair: Option<(usize, usize)>) -> bool {
