@@ -184,6 +184,19 @@ def test_slopes_beside_a_center_that_attracts_slowly(n: float, b: float) -> None
     assert found == pytest.approx(float(slope), rel=1e-6, abs=0.0)
 
 
+@pytest.mark.parametrize("energy", [0.05, 1.0, 10.0])
+@pytest.mark.parametrize("n", [1.75, 1.9])
+def test_quotients_whose_second_derivatives_leave_the_range_are_powers(n: float, energy: float) -> None:
+    """1/rⁿ is differentiated by (rⁿ)³, which is below all numbers where r⁻ⁿ is not: angles of 1e59 came of that."""
+    b = np.array([0.1, 1e-2, 1e-3, 1e-5, 1e-9, 1e-12])
+    quotient, power = (
+        S.deflect(potential, energy=energy, impact_parameter=b)
+        for potential in (Custom(lambda r: -1.0 / r**n), PowerLaw(-1.0, n))
+    )
+    assert np.allclose(quotient.angle, power.angle, rtol=1e-11, atol=0.0)
+    assert np.allclose(quotient.closest_approach, power.closest_approach, rtol=1e-11, atol=0.0)
+
+
 def beside_center(n: mpmath.mpf, b: mpmath.mpf) -> mpmath.mpf:
     """ψ of −1/rⁿ at E = 1, by r = r₀/sin φ."""
     low, high = mpmath.mpf(0), b

@@ -208,7 +208,10 @@ fn scale<V: Vector8>(turned: &mut Turned) {
         turned.root[row] = root.store();
         turned.inverse[row] = inverse.store();
         turned.scale[row] = (energy * value.abs().min(V::splat(0.5)) * inverse).store();
-        turned.curvature[row] = (r * r * V::load(turned.curvature[row]) / energy).store();
+        // What has left the range of numbers on the way to a second derivative is that of the power that V is there.
+        let bend = r * r * V::load(turned.curvature[row]) / energy;
+        let of_power = force * (V::one() + force / value);
+        turned.curvature[row] = V::select(bend.abs().less_equal(V::splat(f64::MAX)), bend, of_power).store();
     }
 }
 

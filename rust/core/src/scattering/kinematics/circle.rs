@@ -86,7 +86,10 @@ impl Circle {
     }
     /// What the scattering angles of [`branches`](Self::branches) lack of π, with all digits where that is little.
     pub fn complements(self, lab_angle: f64) -> [Option<f64>; 2] {
-        self.directions(lab_angle).map(|direction| direction.map(|(along, across, _)| atan2(across, -along)))
+        let lacks = |(along, across, _): (f64, f64, f64)| {
+            if along > 0.0 { PI - atan2(across, along) } else { atan2(across, -along) }
+        };
+        self.directions(lab_angle).map(|direction| direction.map(lacks))
     }
 
     /// Along the beam and across it in the centre-of-mass frame, and the jacobian, of each branch.
