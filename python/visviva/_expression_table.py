@@ -11,7 +11,8 @@ from visviva._arrays import number
 from visviva._keywords import check_call
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, call_with_expressions, recorded
+from visviva.generalized._known_functions import FUNCTIONS
+from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:

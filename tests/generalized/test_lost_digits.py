@@ -13,7 +13,7 @@ import pytest
 
 import visviva as vv
 from visviva.generalized._calculus import Calculus
-from visviva.generalized._nodes import FUNCTIONS
+from visviva.generalized._known_functions import FUNCTIONS
 from visviva.generalized._rounding import rounding_of
 
 ONE = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2, ["x"], position=[0.3], momentum=[0.2])

@@ -197,3 +197,11 @@ def test_what_rounding_makes_of_an_energy_is_no_lack_of_steps(offset: float) -> 
         warnings.simplefilter("error")
         small.run(50.0)
         small.run(50.0, method="dop853")
+
+
+@pytest.mark.parametrize("turns", [1e11, 1e12])
+def test_an_angle_that_has_few_digits_left_is_no_lack_of_steps(turns: float) -> None:
+    """A last digit of the angle is 1e-5 there, and 1e-6 of the energy."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        vv.systems.pendulum(position=[turns], velocity=[8.0]).run(20.0)

@@ -30,12 +30,12 @@ def relativistic(position: float = 0.8, momentum: float = 0.6) -> vv.Hamiltonian
     )
 
 
-def heavy(position: ArrayLike = (0.7, -0.4)) -> vv.Hamiltonian:
+def heavy(position: ArrayLike = (0.7, -0.4), mass: float = 2.5) -> vv.Hamiltonian:
     """Masses that are not one, and bound to each other."""
     return vv.Hamiltonian(
         lambda q, p, t, m: p[0] ** 2 / (2.0 * m) + (p[1] - 0.5 * p[0]) ** 2 - np.cos(q[0]) + q[0] * q[1] ** 3 / 3.0,
         ["x", "y"],
-        parameters={"m": 2.5},
+        parameters={"m": mass},
         position=position,
         momentum=[0.3, 0.2],
     )
@@ -132,3 +132,24 @@ def test_refused_where_kicks_and_drifts_make_no_method() -> None:
     shaken = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 * np.cos(t) + q[0], ["x"], position=[1.0], momentum=[0.2])
     with pytest.raises(vv.InvalidInput, match=r"H = T\(p\) \+ V\(q\); here they do"):
         shaken.run(1.0, method="yoshida4", dt=0.1)
+
+
+def test_copies_with_masses_of_their_own_and_events() -> None:
+    """Each has the bits and the events that it has alone, by one thread and three; backward in time, too."""
+    masses = np.linspace(0.5, 4.0, 11)
+    crossing = vv.events.coordinate("x", 0.0)
+    for end in (3.0, -3.0):
+        one, three = (
+            heavy()
+            .ensemble(parameters={"m": masses})
+            .run(end, method="kahan_li8", dt=0.05, events=[crossing], threads=threads)
+            for threads in (1, 3)
+        )
+        assert np.array_equal(one.position, three.position)
+        assert len(one.events.t) == len(three.events.t) >= 11
+        for copy, mass in enumerate(masses):
+            alone = heavy(mass=mass).run(end, method="kahan_li8", dt=0.05, events=[crossing])
+            assert np.array_equal(alone.position[-1], one.position[copy, -1])
+            assert np.array_equal(alone.events.t, one.events.t[one.events.member == copy])
+            # On the section to the roundings of a place, and the exact motion's to the method's error there.
+            assert np.abs(alone.events.position[:, 0]).max() < 1e-14

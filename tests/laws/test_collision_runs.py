@@ -375,3 +375,32 @@ def test_far_from_the_time_zero_bounces_lose_nothing(method: str, t0: float) -> 
     for name in ("position", "velocity", "energy"):
         assert np.allclose(getattr(far, name), getattr(near, name), rtol=1e-11, atol=1e-11), name
     assert np.allclose(far.collisions.t - t0, near.collisions.t, rtol=0.0, atol=abs(t0) * EPSILON)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_copies_far_from_the_time_zero_have_their_own_masses(threads: int) -> None:
+    """Nine balls in a row and nine copies, each as alone, and as at zero but for a rounding of each bounce."""
+    masses = np.random.default_rng(3).uniform(0.5, 2.0, (9, 9))
+    x = np.zeros((9, 3))
+    x[:, 0] = np.arange(9.0)
+    v = np.zeros((9, 3))
+    v[:, 0] = np.random.default_rng(4).normal(size=9)
+    here = spheres(masses[0], x, v, 0.25)
+    there = vv.Scene(here.particles, t0=1e9)
+    times = np.array([0.5, 1.0, 2.0])
+    near = here.ensemble(mass=masses).run(times, collisions="bounce", threads=threads)
+    far = there.ensemble(mass=masses).run(1e9 + times, collisions="bounce", threads=threads)
+    assert len(near.collisions) == len(far.collisions) > 40
+    assert np.allclose(far.position, near.position, rtol=0.0, atol=1e-12)
+    for copy in (0, 8):
+        alone = vv.Scene(vv.Particles(masses[copy], x, v, radius=0.25), t0=1e9).run(1e9 + times, collisions="bounce")
+        assert np.array_equal(alone.position, far.position[copy])
+
+
+def test_what_merges_far_from_the_time_zero_goes_on_from_there() -> None:
+    """The one that is left moves freely, by its closed form, from the instant of the contact."""
+    here = spheres([1.0, 3.0], [[-2, 0, 0], [2, 0, 0]], [[1.0, 0.3, 0], [-0.7, 0, 0]], [0.5, 0.25])
+    near = here.run([1.0, 3.0, 8.0], collisions="merge")
+    far = vv.Scene(here.particles, t0=1e9).run(1e9 + np.array([1.0, 3.0, 8.0]), collisions="merge")
+    assert len(near.collisions) == 1
+    assert np.allclose(far.position, near.position, rtol=0.0, atol=1e-14)

@@ -4,6 +4,8 @@ Bounds: sums of a few accelerations in another order, 1e-15; a run there and bac
 runs at rtol = 1e-12 are ten times nearer than is allowed, in energy and to closed forms.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -361,3 +363,16 @@ def test_a_drive_beyond_what_its_cosine_knows_is_refused() -> None:
         assert refused.value.argument == "frequency"
     # A closed form knows larger ones.
     assert near.run(3.6e5).plan.closed_form
+
+
+def test_an_array_of_one_number_is_the_number(tmp_path: Path) -> None:
+    """Which means the same to the core, and files give the number back: scenes of one body were not what they were."""
+    for array, number in (
+        (vv.QuadraticDrag([0.1]), vv.QuadraticDrag(0.1)),
+        (vv.Coulomb([2.0], k=1.0), vv.Coulomb(2.0, k=1.0)),
+    ):
+        assert array == number
+        assert hash(array) == hash(number)
+        out = vv.Scene(vv.Particles([1.0], [[1.0, 2.0, 3.0]], [[1.0, 0.0, 0.0]]), array).run(t=1.0)
+        out.save(tmp_path / "one.npz")
+        assert vv.load(tmp_path / "one.npz").scene == out.scene

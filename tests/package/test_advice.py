@@ -184,3 +184,28 @@ def test_a_method_that_never_holds_is_given_up_soon() -> None:
     begun = time.perf_counter()
     scene.advise(300.0, accuracy=1e-6, of="position")
     assert time.perf_counter() - begun < 10.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, 6])
+def test_encounters_between_outputs_count(seed: int) -> None:
+    """Energies are what was asked for at every time, an encounter's among them: 32 times missed it by up to eight."""
+    random = np.random.default_rng(seed)
+    scene = vv.Scene(
+        vv.Particles(random.uniform(0.3, 1.0, 3), random.normal(size=(3, 3)), 0.4 * random.normal(size=(3, 3))),
+        vv.Gravity(G=1.0),
+    )
+    advice = scene.advise(10.0, accuracy=1e-6)
+    energy = scene.run(np.linspace(0.0, 10.0, 2001), **advice.how).energy
+    assert np.abs(energy / energy[0] - 1.0).max() < 3e-6
+
+
+def test_the_time_of_a_run_is_told_without_that_of_the_outputs() -> None:
+    """A state between two nodes takes a step of its own, of which a short run has fewer than the trial looks at."""
+    scene = vv.problems.figure_eight().scene
+    advice = scene.advise(5.0, accuracy=1e-6)
+    slow = [option for option in advice.options if option.how["method"] == "sofroniou_spaletta10"]
+    fast = [option for option in advice.options if option.how["method"] in ("kahan_li8", "taylor", "dop853")]
+    assert slow
+    assert fast
+    # Within twenty times of each other, as steps are; it was a hundred.
+    assert slow[0].seconds < 20.0 * min(option.seconds for option in fast)

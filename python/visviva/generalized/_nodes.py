@@ -12,63 +12,26 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._known_functions import (
+    BENT,
+    FUNCTIONS,
+    KNOWN,
+    LEAPS,
+    MADE_OF,
+    NUMPY,
+    OF_FLOATS,
+    SWITCH,
+    WIDTH,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "recorded"]
+__all__ = ["Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "recorded"]
 
 Node: TypeAlias = tuple[str, list[int], float]
-
-FUNCTIONS = (
-    "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
-    "asin", "acos", "atan", "asinh", "acosh", "atanh",
-)  # fmt: skip
-#: Of a smooth step in the place of a leap: one that is narrower than a step is found by methods that choose theirs.
-WIDTH = "which steps follow, however small the width"
-#: Where two laws meet.
-SWITCH = "end the run by an event where it switches, and go on from out.final with the other law"
-_LARGER = "write (x + y + abs(x - y)) / 2"
-_SMALLER = "write (x + y - abs(x - y)) / 2"
-_WHOLE = f"{{}} is the same between leaps: put a number in its place, or {SWITCH}"
-#: What leaps, and what to write instead.
-_LEAPS = {
-    "floor_divide": "x // y leaps; write x / y, or end the run by an event where parts differ, and go on from there",
-    "remainder": "x % y leaps; where it is to wrap an angle, leave it: sines and cosines do so themselves",
-    "divmod": "divmod leaps; end the run by an event where parts differ, and go on from there",
-    "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width), " + WIDTH,
-    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2, " + WIDTH,
-} | {name: _WHOLE.format(name) for name in ("floor", "ceil", "trunc", "rint", "round")}
-#: What is bent where its arguments meet.
-_BENT = {"maximum": _LARGER, "fmax": _LARGER, "minimum": _SMALLER, "fmin": _SMALLER}
-#: What is the same as another of floats.
-_OF_FLOATS = {np.fabs: np.absolute, np.float_power: np.power}
-_NUMPY = {
-    "arcsin": "asin",
-    "arccos": "acos",
-    "arctan": "atan",
-    "arcsinh": "asinh",
-    "arccosh": "acosh",
-    "arctanh": "atanh",
-}
-#: What is made of these, by the name that NumPy calls.
-_MADE_OF = {
-    "cbrt": "_cbrt",
-    "exp2": "_exp2",
-    "expm1": "_expm1",
-    "log1p": "_log1p",
-    "log2": "_log2",
-    "log10": "_log10",
-    "deg2rad": "_radians",
-    "radians": "_radians",
-    "rad2deg": "_degrees",
-    "degrees": "_degrees",
-}
-_KNOWN = ", ".join(
-    (*FUNCTIONS, "cbrt", "exp2", "expm1", "log1p", "log2", "log10", "deg2rad", "rad2deg", "hypot", "arctan2")
-)
 
 
 class Nodes:
@@ -207,7 +170,7 @@ class Expression:
         return self._with("product", self)._with("sqrt")
 
     def _leaps(self, name: str) -> NoReturn:
-        raise self._refused(f"{name} of coordinates has no derivatives where it leaps: {_LEAPS[name]}")
+        raise self._refused(f"{name} of coordinates has no derivatives where it leaps: {LEAPS[name]}")
 
     def _refused(self, message: str) -> InvalidInput:
         return InvalidInput(self._nodes.argument, message)
@@ -336,14 +299,14 @@ class Expression:
         return self._with("atan2", other)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        if ufunc.__name__ in _LEAPS:
+        if ufunc.__name__ in LEAPS:
             self._leaps(ufunc.__name__)
-        if ufunc.__name__ in _BENT:
+        if ufunc.__name__ in BENT:
             raise self._refused(
                 f"{ufunc.__name__} is bent where its arguments meet, and the function must not branch on coordinates; "
-                f"{_BENT[ufunc.__name__]}"
+                f"{BENT[ufunc.__name__]}"
             )
-        ufunc = _OF_FLOATS.get(ufunc, ufunc)
+        ufunc = OF_FLOATS.get(ufunc, ufunc)
         # NumPy asks the first argument for these, which may be a number.
         if ufunc in (np.arctan2, np.hypot):
             inputs = tuple(self._with("product", 0.0)._with("sum", x) if np.isscalar(x) else x for x in inputs)
@@ -352,15 +315,15 @@ class Expression:
 
     def __getattr__(self, name: str) -> Callable[[], Expression]:
         # np.sin of an object calls its method sin.
-        function = _NUMPY.get(name, name)
+        function = NUMPY.get(name, name)
         if function in FUNCTIONS:
             return lambda: self._with(function)
-        if name in _MADE_OF:
-            made: Callable[[], Expression] = object.__getattribute__(self, _MADE_OF[name])
+        if name in MADE_OF:
+            made: Callable[[], Expression] = object.__getattribute__(self, MADE_OF[name])
             return made
         if name.startswith("_"):
             raise AttributeError(name)
-        raise self._refused(f"function {name} is not known to the compiled core; known: {_KNOWN}")
+        raise self._refused(f"function {name} is not known to the compiled core; known: {KNOWN}")
 
 
 def call_with_expressions(
@@ -385,8 +348,8 @@ def call_with_expressions(
             error.add_note(f"{argument}: raised in {name}, which is called with expressions in the place of numbers")
             raise
         name = str(error).partition("ufunc '")[2].partition("'")[0]
-        cure = f"; {_LEAPS[name]}" if name in _LEAPS else ""
-        raise InvalidInput(argument, f"{error}{cure}. Functions that the core knows: {_KNOWN}") from error
+        cure = f"; {LEAPS[name]}" if name in LEAPS else ""
+        raise InvalidInput(argument, f"{error}{cure}. Functions that the core knows: {KNOWN}") from error
 
 
 def recorded(nodes: Nodes, value: Any, argument: str) -> int:

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 from visviva._keywords import known_keywords
 from visviva._packages import needed
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, SWITCH, WIDTH, Node, Nodes
+from visviva.generalized._known_functions import FUNCTIONS, SWITCH, WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
     from sympy import Symbol
+
+    from visviva.generalized._nodes import Node, Nodes
 
 __all__ = ["Symbols", "coordinate", "free_name", "named_symbols", "symbols_of_names", "sympy", "time", "trees"]
 
