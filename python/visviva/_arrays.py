@@ -227,22 +227,25 @@ _Values = TypeVar("_Values", float, NDArray[np.float64])
 def in_range(name: str, before: _Values, after: _Values) -> _Values:
     """Check that a change of units lost nothing: what comes after is finite, and zero only where it was zero before.
 
+    Nor may it be so small that digits are missing (below 2.2e-308), where it was not before.
+
     Examples
     --------
     >>> from visviva._arrays import in_range
     >>> in_range("G", 2.0, 0.0)
     Traceback (most recent call last):
       ...
-    visviva.errors.InvalidInput: G: expected units in which it stays within float64, but 2.0 becomes 0.0; choose them \
-nearer to the scene
+    visviva.errors.InvalidInput: G: expected units in which it stays within float64, all digits of \
+it, but 2.0 becomes 0.0; choose them nearer to the scene
     """
     old, new = np.asarray(before), np.asarray(after)
-    lost = ~np.isfinite(new) | ((new == 0.0) & (old != 0.0))
+    least = np.finfo(np.float64).tiny
+    lost = ~np.isfinite(new) | ((np.abs(new) < least) & (np.abs(old) >= least))
     if lost.any():
         raise InvalidInput(
             name,
-            f"expected units in which it stays within float64, but {old[lost][0]} becomes {new[lost][0]}; "
-            "choose them nearer to the scene",
+            f"expected units in which it stays within float64, all digits of it, but {old[lost][0]} becomes "
+            f"{new[lost][0]}; choose them nearer to the scene",
         )
     return after
 

@@ -359,3 +359,16 @@ def test_near_distances_across_a_break_of_a_table() -> None:
     ends = np.linspace(1.0, 1.2, 12)
     parts = vv.orbits.time_of_flight(table, ends[:-1], ends[1:], energy=4.0, angular_momentum=0.3)
     assert parts.sum() == pytest.approx(whole, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize(("mass", "k", "momentum"), [(1e100, -1e200, 4e199), (1e-100, -1e-200, 4e-201)])
+def test_circles_whose_volume_leaves_the_range_of_numbers(mass: float, k: float, momentum: float) -> None:
+    """About Coulomb's center r = l²/m|k|, and the radial frequency is that of the circle, l/mr², which are in range."""
+    circles = vv.orbits.circular_orbits(Coulomb(k), angular_momentum=momentum, mass=mass)
+    radius = momentum / abs(k) * (momentum / mass)
+    frequency = momentum / mass / radius / radius
+    # Some ten roundings each; of the radius those of its search.
+    assert circles.radius == pytest.approx([radius], rel=1e-14, abs=0)
+    assert circles.angular_velocity == pytest.approx([frequency], rel=1e-13, abs=0)
+    assert circles.radial_frequency == pytest.approx([frequency], rel=1e-13, abs=0)
+    assert circles.stable.all()

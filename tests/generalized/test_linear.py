@@ -133,3 +133,20 @@ def test_what_grows_beyond_all_numbers_is_told() -> None:
     with pytest.raises(vv.ConvergenceError) as caught:
         system.run([1.0, 1e4])
     assert len(caught.value.trajectory.t) == 1
+
+
+@pytest.mark.parametrize("coordinates", [1, 3, 4, 8])
+def test_a_unit_of_mass_changes_no_small_motion(coordinates: int) -> None:
+    """m times a Lagrangian without units, m down to 1e-120: the determinant of M vanishes, but not its inverse."""
+    masses = 1e-120, 1e-91, 1.0, 1e80
+    for mass in masses:
+        system = vv.Lagrangian(
+            lambda q, v, t, m=mass: m * sum(v[i] ** 2 - q[i] ** 2 for i in range(coordinates)) / 2 - m * q[0] ** 4 / 4,
+            [f"q{i}" for i in range(coordinates)],
+            position=np.zeros(coordinates),
+        )
+        assert len(system.equilibria(near=[np.zeros(coordinates)])) == 1
+        # One square root each, of numbers that are exact.
+        assert system.linearize(at=np.zeros(coordinates)).frequencies == pytest.approx(
+            [1.0] * coordinates, rel=1e-15, abs=0
+        )

@@ -137,3 +137,14 @@ def test_kinetic_energies_add_where_squares_of_momenta_overflow() -> None:
     # Three sums of some ten roundings each.
     together = here.center_of_mass_kinetic_energy + here.internal_kinetic_energy
     assert together == pytest.approx(here.kinetic_energy, rel=4e-15, abs=0)
+
+
+def test_units_that_leave_numbers_without_their_digits_are_refused() -> None:
+    """Below 2.2e-308 numbers have fewer digits: k = 0.9 came back as 0.875."""
+    particles = vv.Particles([1.0, 2.0], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    scene = vv.Scene(particles, vv.Coulomb([0.7, -1.1], k=0.9))
+    with pytest.raises(vv.InvalidInput, match="all digits of it"):
+        scene.rescaled(length=2.0**-107, mass=2.0**-130, time=2.0**310)
+    # The last octave that has them all.
+    scaled = scene.rescaled(time=2.0**510)
+    assert scaled.rescaled(time=2.0**-510).forces[0] == scene.forces[0]

@@ -246,10 +246,10 @@ def circular_orbit(
     """
     shape, flat = checked(radius=radius, mass=mass)
     found = _core.central_circles(core_potentials(potential), *flat)
-    square = found.pop("radial_square")
-    found["radial_frequency"] = np.sqrt(np.where(square > 0.0, square, np.nan))
-    found["growth_rate"] = np.sqrt(np.maximum(-square, 0.0))
-    stable: NDArray[np.bool_] = (square > 0.0).reshape(shape)[()]
+    rate = found.pop("radial_rate")
+    found["radial_frequency"] = np.where(rate > 0.0, rate, np.nan)
+    found["growth_rate"] = np.maximum(-rate, 0.0)
+    stable: NDArray[np.bool_] = (rate > 0.0).reshape(shape)[()]
     return CircularOrbits(stable=stable, **fields(found, shape))
 
 

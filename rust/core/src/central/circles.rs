@@ -15,8 +15,8 @@ pub struct Circle {
     pub angular_momentum: f64,
     /// ω = √(V′/mr).
     pub angular_velocity: f64,
-    /// (3V′/r + V″)/m: the square of the frequency of a small radial oscillation, or of the rate at which one grows.
-    pub radial_square: f64,
+    /// √((3V′/r + V″)/m), the frequency of a small radial oscillation; below zero the rate at which one grows.
+    pub radial_rate: f64,
     /// The angle π ω/ω_r from pericenter to apocenter of an orbit nearby; NaN where there is none.
     pub apsidal_angle: f64,
 }
@@ -38,8 +38,9 @@ impl Landscape {
             radius,
             energy: field.give_energy(value + 0.5 * r * slope),
             angular_momentum: scale(r * (r * slope * mass).sqrt(), length + energy / 2),
-            angular_velocity: scale((slope / (r * mass)).sqrt(), energy / 2 - length),
-            radial_square: scale(square / mass, energy - 2 * length),
+            // Neither r³ nor m r³ need be within the range of numbers.
+            angular_velocity: scale((slope / r / mass).sqrt(), energy / 2 - length),
+            radial_rate: scale((square.abs() / mass).sqrt().copysign(square), energy / 2 - length),
             apsidal_angle: PI / ratio,
         })
     }

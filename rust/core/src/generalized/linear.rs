@@ -242,7 +242,10 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Option<Modes>> {
     finite(matrices, n)?;
     let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness]
         .map(|rows| DMatrix::from_row_slice(n, n, rows));
-    if mass.clone().try_inverse().is_none() {
+    // In units in which its diagonal is one: determinants of small masses vanish in others.
+    let units = units(&matrices.mass, n);
+    let alike = DMatrix::from_fn(n, n, |i, j| mass[(i, j)] * units[i] * units[j]);
+    if alike.try_inverse().is_none() {
         return Err(Error::invalid("position", "the mass matrix is singular there"));
     }
     let scale = stiffness.amax();

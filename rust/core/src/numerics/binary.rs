@@ -1,6 +1,6 @@
 //! The bits of a binary64 number, in every lane: what arithmetic alone cannot do, or not as fast.
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Vector8};
 use super::real::Real;
 
 /// Added to an integer n > -1023, leaves n and the bias of an exponent in the low bits of the sum.
@@ -61,7 +61,7 @@ impl Binary for f64 {
 }
 
 impl Binary for Lanes {
-    const APART: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
+    const APART: bool = <Self as Vector8>::APART;
     #[inline(always)]
     fn power_of_two(self) -> Self {
         self.map(f64::power_of_two)

@@ -60,6 +60,9 @@ impl Bits {
 pub trait Vector8: Real<Mask = Bits> + sealed::Sealed {
     /// How many of them a processor's registers hold.
     const REGISTERS: usize;
+    /// Whether every operation is a call. Kernels are then not written out for each number of bodies, nor for the plane, which
+    /// would save little time and be a good part of all code.
+    const APART: bool = false;
     /// Eight integers of the tier.
     type Words: Words;
     /// A slice of lanes seen as this tier's.

@@ -63,7 +63,7 @@ const CIRCLES: &[Named] = &[
     ("energy", |found| found.energy),
     ("angular_momentum", |found| found.angular_momentum),
     ("angular_velocity", |found| found.angular_velocity),
-    ("radial_square", |found| found.radial_square),
+    ("radial_rate", |found| found.radial_rate),
     ("apsidal_angle", |found| found.apsidal_angle),
 ];
 
@@ -165,8 +165,8 @@ fn numbers_of(landscape: &Landscape, (energy, turning, m, near): Asked) -> Resul
     let [period, angle, time_error, angle_error] = match kind {
         "circular" => {
             let circle = landscape.circle(0.5 * (low + high), m);
-            let square = circle.map_or(f64::NAN, |circle| circle.radial_square);
-            let period = 2.0 * core::f64::consts::PI / square.sqrt();
+            let rate = circle.map_or(f64::NAN, |circle| circle.radial_rate);
+            let period = if rate < 0.0 { f64::NAN } else { core::f64::consts::TAU / rate };
             [period, circle.map_or(f64::NAN, |circle| circle.apsidal_angle), 0.0, 0.0]
         }
         "bound" => {

@@ -4,6 +4,7 @@
 //! of the state to one writing, a processor does both chains at once; and what gravity has found serves both.
 
 use super::newton;
+use super::pair::components;
 use super::ring::{Ring, Turns, turns};
 use crate::error::Result;
 use crate::forces::context::Context;
@@ -58,7 +59,7 @@ fn both<V: Vector8 + InverseCube, B: Beside, const PLANAR: bool, const TURNS: us
     a: &mut [Lanes],
     first: bool,
 ) {
-    let components = if PLANAR { 2 } else { 3 };
+    let components = components::<V, PLANAR>(of.ring.components());
     let (mut place, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
     place[..components].copy_from_slice(&V::view(q)[..components]);
     if B::VELOCITY {
@@ -83,21 +84,19 @@ fn apply<V: Vector8 + InverseCube, B: Beside>(
     first: bool,
 ) {
     macro_rules! select {
-        ($($bodies:literal)+) => {
-            match (of.ring.bodies(), of.ring.planar()) {
-                $(
-                    ($bodies, false) => select!($bodies, false),
-                    ($bodies, true) => select!($bodies, true),
-                )+
+        ($planar:literal: $($bodies:literal)+) => {
+            match of.ring.bodies() {
+                $($bodies => both::<V, B, $planar, { $bodies / 2 }, { $bodies % 2 == 0 }>(of, q, v, a, first),)+
                 // More than RING_MAX bodies never come here.
                 _ => {}
             }
         };
-        ($bodies:literal, $planar:literal) => {
-            both::<V, B, $planar, { $bodies / 2 }, { $bodies % 2 == 0 }>(of, q, v, a, first)
-        };
     }
-    select!(1 2 3 4 5 6 7 8);
+    if of.ring.planar::<V>() {
+        select!(true: 1 2 3 4 5 6 7 8);
+    } else {
+        select!(false: 1 2 3 4 5 6 7 8);
+    }
 }
 
 tiered! {

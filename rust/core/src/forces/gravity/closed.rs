@@ -8,6 +8,7 @@ use super::few::sums;
 use super::relative::Relative;
 use super::{CLOSED_MAX, FewBodies};
 use crate::error::Result;
+#[cfg(test)]
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
@@ -125,6 +126,8 @@ tiered! {
     fn lanes_steps[][](few: &FewBodies<Lanes>, nodes: Nodes<'_, Lanes>, steps: u64) = lanes_kernel;
 }
 
+/// Of one trajectory, as tests have it.
+#[cfg(test)]
 fn plain_steps<S: Element>(few: &FewBodies<S>, nodes: Nodes<'_, S>, steps: u64) {
     select_kernel(few.bodies(), few.shape, &few.strength, few.softening2, nodes, steps);
 }
@@ -146,7 +149,9 @@ macro_rules! closed_kernel {
         }
     )+};
 }
-closed_kernel!(Lanes: lanes_steps, f64: plain_steps, DoubleDouble: plain_steps);
+closed_kernel!(Lanes: lanes_steps);
+#[cfg(test)]
+closed_kernel!(f64: plain_steps, DoubleDouble: plain_steps);
 
 /// Whether closed systems of so many bodies, none of them massless, have a kernel for the method.
 pub fn serves(method: &Method, massive: usize) -> bool {

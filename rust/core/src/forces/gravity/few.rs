@@ -1,14 +1,16 @@
-//! Up to eight massive bodies, one trajectory (`f64`, double-double) or eight of them (`Lanes`).
+//! Up to eight massive bodies, eight trajectories side by side (`Lanes`); of tests also one (`f64`, double-double).
 //!
 //! The loops run over pairs; the lanes, if any, over trajectories. Adds each body's terms in the ring
 //! order of the module header, as [`ring`](super::ring) does with lanes over bodies. A state may hold several
 //! systems, one after another in its rows: each pair waits long for its weight, and another system's pairs
 //! can be weighed meanwhile.
 
+use super::RING_MAX;
 use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
 use crate::forces::{Adds, Force, Phase};
+#[cfg(test)]
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
@@ -199,6 +201,54 @@ fn some_systems<
     }
 }
 
+/// As [`select_kernel`], for any number of bodies, the same sums in the same order: where [operations are
+/// calls](Vector8::APART).
+fn any_systems<S: InverseCube>(systems: &Systems<'_, S>, a: &mut [S], first: bool) {
+    let (rows, components) = (systems.shape.rows, systems.shape.components);
+    let (bodies, massive) = (rows / systems.count, systems.strength.len() / systems.count);
+    let softening2 = S::splat(systems.softening2);
+    let none = [[S::zero(); 3]; RING_MAX];
+    for (system, strength) in systems.strength.chunks_exact(massive.max(1)).enumerate() {
+        let place = |body: usize| {
+            let mut place = [S::zero(); 3];
+            for c in 0..components {
+                place[c] = systems.q[c * rows + system * bodies + body];
+            }
+            place
+        };
+        let (mut position, mut sum, mut pull) = (none, none, none);
+        for i in 0..massive {
+            position[i] = place(i);
+        }
+        for distance in 1..=massive / 2 {
+            for i in 0..massive {
+                let ahead = position[(i + distance) % massive];
+                for c in 0..3 {
+                    pull[i][c] = ahead[c] - position[i][c];
+                }
+                let weight = squared_distance::<S, false, true>(pull[i], softening2).inverse_cube();
+                pull[i] = pull[i].map(|pull| pull * weight);
+            }
+            for i in 0..massive {
+                let (ahead, behind) = ((i + distance) % massive, (i + massive - distance) % massive);
+                for c in 0..3 {
+                    sum[i][c] = strength[ahead].multiply_add(pull[i][c], sum[i][c]);
+                    if ahead != behind {
+                        sum[i][c] = strength[behind].multiply_subtract_from(pull[behind][c], sum[i][c]);
+                    }
+                }
+            }
+        }
+        for body in 0..bodies {
+            let term = match sum[..massive].get(body) {
+                Some(&sum) => sum,
+                None => attraction::<S, false, true>(place(body), &position[..massive], strength, softening2),
+            };
+            add(a, system * bodies + body, rows, components, term, first);
+        }
+    }
+}
+
 /// Writes an acceleration, or adds it.
 #[inline(always)]
 fn add<S: Real>(a: &mut [S], row: usize, rows: usize, components: usize, term: [S; 3], first: bool) {
@@ -247,7 +297,9 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
         softening2: bodies.softening2,
         q: V::view(q),
     };
-    if V::REGISTERS >= 32 {
+    if V::APART {
+        any_systems(&systems, V::view_mut(a), first);
+    } else if V::REGISTERS >= 32 {
         select_kernel::<V, true>(&systems, V::view_mut(a), first);
     } else {
         select_kernel::<V, false>(&systems, V::view_mut(a), first);
@@ -274,6 +326,9 @@ impl Force<Lanes> for FewBodies<Lanes> {
     }
 }
 
+/// One trajectory, to which tests compare lanes, and numbers of twice the digits, by which they measure errors. A build does
+/// without: written out for each number of bodies, these are a good part of all code.
+#[cfg(test)]
 macro_rules! plain_force {
     ($type:ty) => {
         impl Force<$type> for FewBodies<$type> {
@@ -297,5 +352,7 @@ macro_rules! plain_force {
         }
     };
 }
+#[cfg(test)]
 plain_force!(f64);
+#[cfg(test)]
 plain_force!(DoubleDouble);

@@ -4,7 +4,7 @@
 //! distance `k`, so `n/2` vector square roots and divisions serve all `n(n-1)/2` pairs and the third law
 //! gives the other half. Same bits as [`few`](super::few).
 
-use super::pair::squared_distance;
+use super::pair::{components, squared_distance};
 use super::passive::packed_attraction;
 use crate::error::Result;
 use crate::forces::{Adds, Force, Phase};
@@ -83,9 +83,15 @@ impl Ring {
         self.strength.len()
     }
 
-    /// Whether they stay in a plane.
-    pub(super) fn planar(&self) -> bool {
-        self.shape.components == 2
+    /// Whether they stay in a plane, and there is a kernel for that.
+    #[inline(always)]
+    pub(super) fn planar<V: Vector8>(&self) -> bool {
+        !V::APART && self.shape.components == 2
+    }
+
+    /// How many components their places have.
+    pub(super) fn components(&self) -> usize {
+        self.shape.components
     }
 }
 
@@ -178,7 +184,7 @@ fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, cons
     let rows = ring.shape.rows;
     // Not copied: a copy is made with narrower instructions than it is read with.
     let (places, sums) = (V::view(q), V::view_mut(&mut *a));
-    let components = if PLANAR { 2 } else { 3 };
+    let components = components::<V, PLANAR>(ring.shape.components);
     let mut place = [V::zero(); 3];
     for c in 0..components {
         place[c] = places[c * rows];
@@ -193,10 +199,11 @@ fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, cons
         sums[c * rows] = sum[c];
     }
     if rows > 1 {
-        if ring.softening2 > 0.0 {
-            passive_rows::<V, PLANAR, true>(ring, q, a, first);
-        } else {
-            passive_rows::<V, PLANAR, false>(ring, q, a, first);
+        match (components == 2, ring.softening2 > 0.0) {
+            (false, false) => passive_rows::<V, false, false>(ring, q, a, first),
+            (false, true) => passive_rows::<V, false, true>(ring, q, a, first),
+            (true, false) => passive_rows::<V, true, false>(ring, q, a, first),
+            (true, true) => passive_rows::<V, true, true>(ring, q, a, first),
         }
     }
 }
@@ -228,23 +235,20 @@ fn passive_rows<V: Vector8 + InverseCube, const PLANAR: bool, const SOFT: bool>(
 
 #[inline(always)]
 fn apply<V: Vector8 + InverseCube>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
-    let planar = ring.shape.components == 2;
     macro_rules! select {
-        ($($bodies:literal)+) => {
-            match (ring.strength.len(), planar) {
-                $(
-                    ($bodies, false) => select!($bodies, false),
-                    ($bodies, true) => select!($bodies, true),
-                )+
+        ($planar:literal: $($bodies:literal)+) => {
+            match ring.strength.len() {
+                $($bodies => kernel::<V, $planar, { $bodies / 2 }, { $bodies % 2 == 0 }>(ring, q, a, first),)+
                 // More than RING_MAX bodies never come here.
                 _ => {}
             }
         };
-        ($bodies:literal, $planar:literal) => {
-            kernel::<V, $planar, { $bodies / 2 }, { $bodies % 2 == 0 }>(ring, q, a, first)
-        };
     }
-    select!(0 1 2 3 4 5 6 7 8);
+    if ring.planar::<V>() {
+        select!(true: 0 1 2 3 4 5 6 7 8);
+    } else {
+        select!(false: 0 1 2 3 4 5 6 7 8);
+    }
 }
 
 tiered! {

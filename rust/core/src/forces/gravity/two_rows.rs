@@ -8,7 +8,7 @@
 //! the second has its row in the ring's order, and to that is added what the eight of the first are together, neighbors
 //! first ([`Vector8::sum_in_every_lane`]).
 
-use super::pair::squared_distance;
+use super::pair::{components, squared_distance};
 use super::ring::{Ring, turns};
 use crate::error::Result;
 use crate::forces::{Adds, Force, Phase};
@@ -48,6 +48,12 @@ impl TwoRows {
         })
     }
 
+    /// Whether they stay in a plane, and there is a kernel for that.
+    #[inline(always)]
+    fn planar<V: Vector8>(&self) -> bool {
+        !V::APART && self.components == 2
+    }
+
     /// The accelerations of both rows of `q`, whose components are `stride` apart.
     pub(super) fn sums(&self, q: &[Lanes], stride: usize) -> [[Lanes; 3]; 2] {
         sums_tier(self, q, stride)
@@ -56,9 +62,9 @@ impl TwoRows {
 
 /// A row of places.
 #[inline(always)]
-fn row<V: Vector8, const PLANAR: bool>(q: &[Lanes], stride: usize, row: usize) -> [V; 3] {
+fn row<V: Vector8>(q: &[Lanes], stride: usize, row: usize, components: usize) -> [V; 3] {
     let mut place = [V::zero(); 3];
-    for c in 0..if PLANAR { 2 } else { 3 } {
+    for c in 0..components {
         place[c] = V::load(q[c * stride + row]);
     }
     place
@@ -70,8 +76,8 @@ fn both<V: Vector8 + InverseCube, const PLANAR: bool>(
     q: &[Lanes],
     stride: usize,
 ) -> [[V; 3]; 2] {
-    let components = if PLANAR { 2 } else { 3 };
-    let place = row::<V, PLANAR>(q, stride, 0);
+    let components = components::<V, PLANAR>(rows.components);
+    let place = row::<V>(q, stride, 0, components);
     let mut sum = turns::<V, PLANAR, 4, true>(&rows.first, place).gravity::<PLANAR, true>(&rows.first);
     let (strength, softening2) = (V::load(rows.strength), V::splat(rows.softening2));
     let numbers = as_numbers(q);
@@ -89,7 +95,7 @@ fn both<V: Vector8 + InverseCube, const PLANAR: bool>(
             across[c] = V::select(here, (strength * pull[c]).sum_in_every_lane(), across[c]);
         }
     }
-    let mut second = second_row::<V, PLANAR>(&rows.second, row::<V, PLANAR>(q, stride, 1));
+    let mut second = second_row::<V, PLANAR>(&rows.second, row::<V>(q, stride, 1, components));
     for c in 0..components {
         second[c] += across[c];
     }
@@ -116,11 +122,8 @@ fn second_row<V: Vector8 + InverseCube, const PLANAR: bool>(ring: &Ring, place: 
 
 #[inline(always)]
 fn sums<V: Vector8 + InverseCube>(rows: &TwoRows, q: &[Lanes], stride: usize) -> [[Lanes; 3]; 2] {
-    let [first, second] = if rows.components == 2 {
-        both::<V, true>(rows, q, stride)
-    } else {
-        both::<V, false>(rows, q, stride)
-    };
+    let [first, second] =
+        if rows.planar::<V>() { both::<V, true>(rows, q, stride) } else { both::<V, false>(rows, q, stride) };
     let mut sums = [[Lanes([0.0; WIDTH]); 3]; 2];
     for c in 0..3 {
         sums[0][c] = first[c].store();
@@ -131,7 +134,7 @@ fn sums<V: Vector8 + InverseCube>(rows: &TwoRows, q: &[Lanes], stride: usize) ->
 
 #[inline(always)]
 fn apply<V: Vector8 + InverseCube>(rows: &TwoRows, q: &[Lanes], a: &mut [Lanes], first: bool) {
-    if rows.components == 2 {
+    if rows.planar::<V>() {
         write::<V, true>(rows, q, a, first);
     } else {
         write::<V, false>(rows, q, a, first);
@@ -146,8 +149,9 @@ fn write<V: Vector8 + InverseCube, const PLANAR: bool>(
     first: bool,
 ) {
     let sums = both::<V, PLANAR>(rows, q, 2);
-    let a = &mut V::view_mut(a)[..if PLANAR { 4 } else { 6 }];
-    for c in 0..if PLANAR { 2 } else { 3 } {
+    let components = components::<V, PLANAR>(rows.components);
+    let a = &mut V::view_mut(a)[..2 * components];
+    for c in 0..components {
         for (row, sum) in sums.iter().enumerate() {
             let a = &mut a[2 * c + row];
             *a = if first { sum[c] } else { *a + sum[c] };

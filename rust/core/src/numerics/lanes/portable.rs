@@ -42,28 +42,28 @@ macro_rules! operations {
 }
 
 operations! {
-    fn sum(a: Lanes, b: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] + b.0[lane])) }
-    fn difference(a: Lanes, b: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] - b.0[lane])) }
-    fn product(a: Lanes, b: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] * b.0[lane])) }
-    fn quotient(a: Lanes, b: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] / b.0[lane])) }
-    fn negative(a: Lanes) -> Lanes { Lanes(each_lane!(|lane| -a.0[lane])) }
-    fn fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+    fn sum(a: &Lanes, b: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] + b.0[lane])) }
+    fn difference(a: &Lanes, b: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] - b.0[lane])) }
+    fn product(a: &Lanes, b: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] * b.0[lane])) }
+    fn quotient(a: &Lanes, b: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane] / b.0[lane])) }
+    fn negative(a: &Lanes) -> Lanes { Lanes(each_lane!(|lane| -a.0[lane])) }
+    fn fused(a: &Lanes, b: &Lanes, c: &Lanes) -> Lanes {
         Lanes(each_lane!(|lane| a.0[lane].mul_add(b.0[lane], c.0[lane])))
     }
-    fn fused_difference(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+    fn fused_difference(a: &Lanes, b: &Lanes, c: &Lanes) -> Lanes {
         Lanes(each_lane!(|lane| (-a.0[lane]).mul_add(b.0[lane], c.0[lane])))
     }
-    fn root(a: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane].sqrt())) }
-    fn magnitude(a: Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane].abs())) }
-    fn larger(a: Lanes, b: Lanes) -> Lanes {
+    fn root(a: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane].sqrt())) }
+    fn magnitude(a: &Lanes) -> Lanes { Lanes(each_lane!(|lane| a.0[lane].abs())) }
+    fn larger(a: &Lanes, b: &Lanes) -> Lanes {
         Lanes(each_lane!(|lane| if a.0[lane] > b.0[lane] { a.0[lane] } else { b.0[lane] }))
     }
-    fn smaller(a: Lanes, b: Lanes) -> Lanes {
+    fn smaller(a: &Lanes, b: &Lanes) -> Lanes {
         Lanes(each_lane!(|lane| if a.0[lane] < b.0[lane] { a.0[lane] } else { b.0[lane] }))
     }
-    fn less(a: Lanes, b: Lanes) -> Bits { bits(each_lane!(|lane| a.0[lane] < b.0[lane])) }
-    fn less_equal(a: Lanes, b: Lanes) -> Bits { bits(each_lane!(|lane| a.0[lane] <= b.0[lane])) }
-    fn select(mask: Bits, a: Lanes, b: Lanes) -> Lanes {
+    fn less(a: &Lanes, b: &Lanes) -> Bits { bits(each_lane!(|lane| a.0[lane] < b.0[lane])) }
+    fn less_equal(a: &Lanes, b: &Lanes) -> Bits { bits(each_lane!(|lane| a.0[lane] <= b.0[lane])) }
+    fn select(mask: Bits, a: &Lanes, b: &Lanes) -> Lanes {
         Lanes(each_lane!(|lane| if mask.lane(lane) { a.0[lane] } else { b.0[lane] }))
     }
 }
@@ -74,7 +74,9 @@ fn bits(lanes: [bool; WIDTH]) -> Bits {
     Bits(((a | b) | (c | d)) | ((e | f) | (g | h)))
 }
 
-operators!(Lanes: sum, difference, product, quotient, negative);
+operators!(
+    Lanes: |a, b| sum(&a, &b), |a, b| difference(&a, &b), |a, b| product(&a, &b), |a, b| quotient(&a, &b), |a| negative(&a)
+);
 
 impl Real for Lanes {
     type Mask = Bits;
@@ -89,39 +91,39 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn multiply_add(self, factor: Self, term: Self) -> Self {
-        fused(self, factor, term)
+        fused(&self, &factor, &term)
     }
     #[inline(always)]
     fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
-        fused_difference(self, factor, term)
+        fused_difference(&self, &factor, &term)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        root(self)
+        root(&self)
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        magnitude(self)
+        magnitude(&self)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        larger(self, other)
+        larger(&self, &other)
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        smaller(self, other)
+        smaller(&self, &other)
     }
     #[inline(always)]
     fn less(self, other: Self) -> Bits {
-        less(self, other)
+        less(&self, &other)
     }
     #[inline(always)]
     fn less_equal(self, other: Self) -> Bits {
-        less_equal(self, other)
+        less_equal(&self, &other)
     }
     #[inline(always)]
     fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
-        select(mask, if_true, if_false)
+        select(mask, &if_true, &if_false)
     }
     #[inline(always)]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
@@ -135,6 +137,7 @@ impl Real for Lanes {
 
 impl Vector8 for Lanes {
     const REGISTERS: usize = 4;
+    const APART: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
     type Words = super::words::Portable;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
