@@ -39,8 +39,8 @@ impl Landscape {
             energy: field.give_energy(value + 0.5 * r * slope),
             angular_momentum: scale(r * (r * slope * mass).sqrt(), length + energy / 2),
             // Neither r³ nor m r³ need be within the range of numbers.
-            angular_velocity: scale((slope / r / mass).sqrt(), energy / 2 - length),
-            radial_rate: scale((square.abs() / mass).sqrt().copysign(square), energy / 2 - length),
+            angular_velocity: scale((slope / r).sqrt() / mass.sqrt(), energy / 2 - length),
+            radial_rate: scale(square.abs().sqrt().copysign(square) / mass.sqrt(), energy / 2 - length),
             apsidal_angle: PI / ratio,
         })
     }
