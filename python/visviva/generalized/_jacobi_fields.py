@@ -1,0 +1,227 @@
+"""Neighbors of a motion that leave its first point with it (Jacobi fields), and how often they come back to it.
+
+The one idea: neighbors obey a linear equation. Their places A and momenta B at the beginning of a step that is too
+short for one to return within it, (A, B) → (aA + bB, …), make a symmetric matrix Aᵀb⁻¹(aA + bB), which has as many
+negative eigenvalues as conjugate points lie in the step (M. Morse's broken extremals): whatever the units, and however
+different the masses.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from visviva.errors import ConvergenceError, InvalidInput
+from visviva.generalized._action import hessian
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._path import Path
+
+__all__ = ["Linear", "Neighbors"]
+
+_Array: TypeAlias = NDArray[np.float64]
+
+#: Gauss's collocation of order 12.
+_STAGES = 6
+#: The length of a step times the fastest rate of the linear equation: what order 12 leaves is then below round-off.
+_RATE = 0.25
+_MOST_STEPS = 100_000
+#: The sine of the angle between what comes back to the first point and what would, below which a step goes on from the
+#: one before: rounding decides there which of two steps a conjugate point is in, and both may count it, or neither.
+_NEAR = 1e-6
+#: How many steps are joined for that at most: a neighbor needs π/0.25 of them to return.
+_MOST_JOINED = 8
+
+
+class Linear:
+    """The accessory equation along a path, in places η and momenta P η̇ + Cᵀη, by collocation.
+
+    In units in which the path takes the time one, and ∂²L/∂q̇∂q̇ has diagonal elements about one halfway.
+    """
+
+    def __init__(self, system: Lagrangian, path: Path) -> None:
+        self.path, self.n = path, len(system.coordinates)
+        self.time = float(path.t[-1] - path.t[0])
+        self.lengths = np.diff(path.t) / self.time
+        self._hessian, self._units = hessian(system), np.ones(self.n)
+        self.nodes, self._weights = _collocation()
+        self._known: dict[int, tuple[_Array, _Array]] = {}
+        every = np.arange(len(self.lengths))
+        kinetic = self.second(every, np.full((len(every), 1), 0.5))[:, 0, self.n :, self.n :]
+        diagonal = np.diagonal(kinetic, axis1=-2, axis2=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sizes = np.sqrt(diagonal)
+            compared = kinetic / sizes[:, :, None] / sizes[:, None, :]
+        if not (np.isfinite(compared).all() and np.linalg.eigvalsh(compared).min() > 1e-14):
+            raise _without_minimum()
+        # Powers of two: no digit of the coefficients changes.
+        self._units = np.exp2(np.rint(np.log2(sizes).mean(axis=0)))
+
+    def second(self, pieces: NDArray[np.intp], u: _Array) -> _Array:
+        """Give the second derivatives of L by (η, η̇), in the units of this class."""
+        q, v = self.path.at(pieces, u)
+        t = self.path.t[pieces][:, None] + u * np.diff(self.path.t)[pieces][:, None]
+        units = np.concatenate([self.time / self._units, 1.0 / self._units])
+        scaled: _Array = self._hessian(t, q, v) * units[:, None] * units
+        return scaled
+
+    def matrices(self, second: _Array, shift: float) -> _Array:
+        """Give the matrices of the linear equation of (η, π)."""
+        n = self.n
+        kinetic, mixed = second[..., n:, n:], second[..., :n, n:]
+        inverse = np.linalg.inv(kinetic)
+        back = mixed @ inverse
+        top = np.concatenate([-np.swapaxes(back, -1, -2), inverse], axis=-1)
+        rest = second[..., :n, :n] - shift * kinetic - back @ np.swapaxes(mixed, -1, -2)
+        return np.concatenate([top, np.concatenate([rest, back], axis=-1)], axis=-2)
+
+    def flows(self, matrices: _Array, lengths: _Array) -> _Array:
+        """Give what (η, π) at the beginnings of steps become at their ends: (K, 2n, 2n)."""
+        stages, size = _STAGES, 2 * self.n
+        # K_i = A_i (1 + h Σ a_ij K_j), for all columns of a fundamental matrix at once.
+        inner = self._weights(self.nodes)
+        coupled = np.einsum("kiab,ij,k->kiajb", matrices, inner, lengths)
+        system = np.eye(stages * size) - coupled.reshape(-1, stages * size, stages * size)
+        slopes = np.linalg.solve(system, matrices.reshape(-1, stages * size, size)).reshape(-1, stages, size, size)
+        moved = np.einsum("j,kjab,k->kab", self._weights(np.ones(1))[0], slopes, lengths)
+        result: _Array = np.eye(size) + moved
+        return result
+
+    def _parts(self, shift: float) -> int:
+        """Give how many steps a piece is cut in."""
+        second = self.second(np.arange(len(self.lengths)), np.full((len(self.lengths), 1), 0.5))
+        rates = np.abs(np.linalg.eigvals(self.matrices(second, shift))).max(axis=(1, 2))
+        parts = np.ceil((rates * self.lengths).max() / _RATE)
+        if not parts * len(rates) <= _MOST_STEPS:
+            raise ConvergenceError("the path is too long for its fastest motion: cut it")
+        # A power of two, so that steps for other shifts are often the same.
+        return 1 << max(0, int(parts) - 1).bit_length()
+
+    def neighbors(self, shift: float) -> Neighbors:
+        """Give the neighbors from the first point on, and how often they come back."""
+        parts, count = self._parts(shift), len(self.lengths)
+        pieces = np.repeat(np.arange(count), parts)
+        first = np.tile(np.arange(parts), count)[:, None] / parts
+        if parts not in self._known:
+            self._known[parts] = self.second(pieces, first + self.nodes / parts), self._local(pieces, first, parts)
+        second, local = self._known[parts]
+        flows = self.flows(self.matrices(second, shift), self.lengths[pieces] / parts)
+        n = self.n
+        frames = np.empty((len(flows) + 1, 2 * n, n))
+        frames[0] = np.concatenate([np.zeros((n, n)), np.eye(n)])
+        for step in range(len(flows)):
+            # Other columns that span the same neighbors, orthonormal in units of the step: none of them is lost.
+            frame = frames[step] @ np.linalg.inv(np.linalg.qr(local[step] @ frames[step], mode="r"))
+            frames[step] = frame
+            frames[step + 1] = flows[step] @ frame
+        smallest = np.linalg.svd((local @ frames[:-1])[:, :n], compute_uv=False).min(axis=-1)
+        starts, returns = _starts(smallest < _NEAR), _returns(frames[:-1], flows)
+        found = Neighbors(pieces, first[:, 0], 1.0 / parts, frames, flows, starts, returns)
+        for step in np.flatnonzero(starts < np.arange(len(flows))).tolist():
+            returns[step] = found.returned(np.array([step]), flows[[step]])[0]
+        return found
+
+    def _local(self, pieces: NDArray[np.intp], first: _Array, parts: int) -> _Array:
+        """Give the units of steps: √P η/√h and √h P⁻¹ᐟ² π, which a free motion mixes evenly."""
+        n = self.n
+        try:
+            roots = np.swapaxes(np.linalg.cholesky(self.second(pieces, first)[:, 0, n:, n:]), -1, -2)
+        except np.linalg.LinAlgError:
+            raise _without_minimum() from None
+        h = np.sqrt(self.lengths[pieces] / parts)[:, None, None]
+        none = np.zeros_like(roots)
+        momenta = h * np.swapaxes(np.linalg.inv(roots), -1, -2)
+        return np.concatenate(
+            [np.concatenate([roots / h, none], axis=-1), np.concatenate([none, momenta], axis=-1)], axis=-2
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbors:
+    """Steps, the neighbors at their ends, and how often they come back in each."""
+
+    pieces: NDArray[np.intp]
+    first: _Array
+    width: float
+    #: One more than the steps, shape (K + 1, 2n, n).
+    frames: _Array
+    flows: _Array
+    #: The steps that the returns of each are counted from.
+    starts: NDArray[np.intp]
+    returns: NDArray[np.int64]
+
+    def returned(self, steps: NDArray[np.intp], shorter: _Array) -> NDArray[np.int64]:
+        """Give how often they come back in parts of steps."""
+        starts, flows = self.starts[steps], shorter.copy()
+        earlier = np.zeros(len(steps), dtype=np.int64)
+        for back in range(1, _MOST_JOINED + 1):
+            joined = np.flatnonzero(steps - back >= starts)
+            flows[joined] = flows[joined] @ self.flows[steps[joined] - back]
+            earlier[joined] += self.returns[steps[joined] - back]
+        counted: NDArray[np.int64] = np.maximum(0, _returns(self.frames[starts], flows) - earlier)
+        return counted
+
+    @property
+    def any(self) -> bool:
+        return bool(self.returns.any())
+
+    @property
+    def few(self) -> bool:
+        return bool(self.returns.sum() <= 1)
+
+    @property
+    def ahead(self) -> float:
+        """How far the neighbors are past the end's point, or what they lack, as angles that grow evenly."""
+        a, b = np.split(self.frames[-1], 2)
+        turned = np.linalg.solve((b - 1j * np.pi * a).T, (b + 1j * np.pi * a).T)
+        angles = np.angle(np.linalg.eigvals(turned)) % (2.0 * np.pi)
+        return float(angles.min()) if self.any else float(angles.max()) - 2.0 * np.pi
+
+
+def _without_minimum() -> InvalidInput:
+    expected = "expected ∂²L/∂q̇∂q̇ to be positive along it (Legendre's condition): the action has no minimum"
+    return InvalidInput("path", expected)
+
+
+def _returns(frames: _Array, flows: _Array) -> NDArray[np.int64]:
+    """Give the conjugate points in steps that each is free of in itself: negative eigenvalues of Aᵀb⁻¹(aA + bB)."""
+    n = frames.shape[-1]
+    places, momenta = frames[..., :n, :], frames[..., n:, :]
+    a, b = flows[..., :n, :n], flows[..., :n, n:]
+    form = np.swapaxes(places, -1, -2) @ (np.linalg.solve(b, a @ places) + momenta)
+    negative: NDArray[np.int64] = (np.linalg.eigvalsh(form + np.swapaxes(form, -1, -2)) < 0.0).sum(axis=-1)
+    return negative
+
+
+def _starts(near: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Give, for each step, the last at or before it at whose beginning no neighbor is about to come back."""
+    starts = np.arange(len(near))
+    # At the first point all neighbors are together, to the bit.
+    for step in (np.flatnonzero(near[1:]) + 1).tolist():
+        if step - starts[step - 1] < _MOST_JOINED:
+            starts[step] = starts[step - 1]
+    return starts
+
+
+def _collocation() -> tuple[_Array, Callable[[_Array], _Array]]:
+    """Give Gauss's nodes in (0, 1), and the weights at them of integrals from 0 to some places."""
+    nodes, gauss = np.polynomial.legendre.leggauss(_STAGES)
+    degrees = np.arange(_STAGES)
+    # Legendre's polynomials are orthogonal over the nodes: monomials would cost two digits.
+    values = np.polynomial.legendre.legvander(nodes, _STAGES - 1).T
+    coefficients = 0.5 * (2 * degrees[:, None] + 1) * gauss * values
+
+    def weights(places: _Array) -> _Array:
+        x = 2.0 * places - 1.0
+        p = np.polynomial.legendre.legvander(x, _STAGES)
+        integrals = np.column_stack([x + 1.0, (p[:, 2:] - p[:, :-2]) / (2 * degrees[1:] + 1)])
+        found: _Array = 0.5 * integrals @ coefficients
+        return found
+
+    return 0.5 * (nodes + 1.0), weights
