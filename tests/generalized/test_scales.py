@@ -223,3 +223,51 @@ def test_lyapunov_exponents_know_no_interval(interval: float) -> None:
     # The sum is the divergence of the flow, 0 but for rounding over the time; the first is short by (ln 2)/2t = 8.7e-4.
     assert found.sum() == pytest.approx(0.0, abs=1e-12)
     assert found[0] == pytest.approx(1.0 - np.log(2.0) / 800.0, abs=1e-10)
+
+
+@pytest.mark.parametrize("length", [1e-20, 1e-10, 1.0, 1e10])
+def test_equilibria_of_a_hamiltonian_in_any_unit_of_length(length: float) -> None:
+    """Newton's steps ended when they were short in the unit of length, and were no longer than a turn of it."""
+    well = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2 + (q[0] ** 2 - length**2) ** 2, ["x"])
+    found = well.equilibria(near=[[0.9 * length, 0.0], [-0.9 * length, 0.0], [0.1 * length, 0.0]])
+    np.testing.assert_allclose([e.position[0] / length for e in found], [-1.0, 0.0, 1.0], rtol=1e-14, atol=0)
+    assert [e.stable for e in found] == [True, False, True]
+    np.testing.assert_allclose(found[0].frequencies, [np.sqrt(8.0) * length], rtol=1e-12, atol=0)
+    ring = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2 + length**4 / (2 * q[0] ** 2) + q[0] ** 2 / 2, ["r"])
+    (circle,) = ring.equilibria(near=[[0.9 * length, 0.0]])
+    np.testing.assert_allclose(circle.position / length, [1.0], rtol=1e-14, atol=0)
+    np.testing.assert_allclose(circle.frequencies, [2.0], rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.9])
+@pytest.mark.parametrize("momentum", [1e-10, 1.0, 1e3, 1e10])
+def test_equilibria_at_large_momenta(momentum: float, start: float) -> None:
+    moved = vv.Hamiltonian(lambda q, p, t: (p[0] - momentum) ** 2 / 2 + q[0] ** 2 / 2, ["x"])
+    (found,) = moved.equilibria(near=[[0.0, start * momentum]])
+    np.testing.assert_allclose(found.momentum, [momentum], rtol=1e-14, atol=0)
+    np.testing.assert_allclose(found.frequencies, [1.0], rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("rate", [1e-12, 1e9, 1e14])
+def test_lyapunov_exponents_in_any_unit_of_time(rate: float) -> None:
+    """Lengths of places and velocities in the units given were told apart by nothing but these."""
+
+    def swinging(rate: float) -> np.ndarray:
+        pendulum = vv.Lagrangian(
+            lambda q, v, t: v[0] ** 2 / 2 + rate**2 * np.cos(q[0]), ["a"], position=[1.0], velocity=[0.0]
+        )
+        return pendulum.lyapunov_exponents(30.0 / rate, interval=1.0 / rate) / rate
+
+    # Units are powers of two: lengths of neighbors differ by less than two at both ends, in a time of 30.
+    np.testing.assert_allclose(swinging(rate), swinging(1.0), rtol=0, atol=2 * np.log(2.0) / 30)
+
+
+@pytest.mark.parametrize("mass", [1e-15, 1e10, 1e20])
+def test_lyapunov_exponents_of_any_mass(mass: float) -> None:
+    def swinging(mass: float) -> np.ndarray:
+        pendulum = vv.Hamiltonian(
+            lambda q, p, t: p[0] ** 2 / (2 * mass) - mass * np.cos(q[0]), ["a"], position=[1.0], momentum=[0.0]
+        )
+        return pendulum.lyapunov_exponents(30.0)
+
+    np.testing.assert_allclose(swinging(mass), swinging(1.0), rtol=0, atol=2 * np.log(2.0) / 30)

@@ -44,3 +44,38 @@ def test_an_event_that_gives_no_number_is_refused_by_name(given: object) -> None
     with pytest.raises(vv.InvalidInput, match="that give a number") as caught:
         vv.problems.kepler(e=0.5).scene.run(t=1.0, events=[lambda t, x, v: given])
     assert caught.value.argument == "events"
+
+
+#: What is one about a place: forces there, and how many roundings of a place its errors come to after five turns.
+CENTERED = {
+    "harmonic": (lambda c: [vv.Harmonic(k=1.0, center=c)], 4.0),
+    "harmonic in a field": (lambda c: [vv.Harmonic(k=1.0, center=c), vv.UniformField((0, -9.8, 0))], 8.0),
+    "harmonic, damped": (lambda c: [vv.Harmonic(k=1.0, center=c), vv.LinearDrag(tau=50.0)], 4.0),
+    "harmonic, driven": (lambda c: [vv.Harmonic(k=1.0, center=c), vv.DrivenForce((1, 0, 0), 0.7)], 4.0),
+    "Kepler": (lambda c: [vv.CentralField(vv.potentials.Coulomb(k=-1.0), center=c)], 40.0),
+    "rotating": (lambda c: [vv.RotatingFrame((0, 0, 0.3), center=c)], 8.0),
+}
+
+
+@pytest.mark.parametrize("far", [1e2, 1e5, 1e8, 1e12])
+@pytest.mark.parametrize("name", CENTERED)
+def test_a_center_far_from_the_origin(name: str, far: float) -> None:
+    """A tolerance below the rounding of places halved steps until they were of nothing: millions, for some fifty."""
+    forces, roundings = CENTERED[name]
+    center = (far, 0.0, 0.0)
+    body = vv.Particles([1.0], [[far + 1.0, 0.0, 0.0]], [[0.0, 1.1, 0.0]])
+    scene = vv.Scene(body, forces(center))
+    crossing = vv.events.plane((far, 0.1, 0.0), (0.0, 1.0, 0.0))
+    out, known = scene.run(t=20.0, events=[crossing]), scene.run(t=20.0)
+    assert out.stats.steps < 200
+    bound = roundings * np.spacing(far)
+    np.testing.assert_allclose(out.position, known.position, rtol=0, atol=bound)
+    np.testing.assert_allclose(out.velocity, known.velocity, rtol=0, atol=bound)
+
+
+def test_a_body_that_starts_in_a_center_far_away() -> None:
+    """It has no distance to be measured against: its velocity keeps the digits that rounding of places leaves it."""
+    center = (1e8, 0.0, 0.0)
+    scene = vv.Scene(vv.Particles([1.0], [center], [[0.0, 1.0, 0.0]]), vv.Harmonic(k=1.0, center=center))
+    out = scene.run(t=20.0, events=[vv.events.plane(center, (0.0, 1.0, 0.0))])
+    assert out.velocity[-1, 0, 1] == pytest.approx(np.cos(20.0), abs=4 * np.spacing(1e8))

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._higher_orders import Curvatures
+    from visviva.generalized._system import GeneralizedSystem
 
 __all__ = ["fixed_points", "rates_and_slopes", "rounding_of_slopes", "slopes_at"]
 
@@ -35,6 +36,8 @@ _STEPS = 240
 _SINGULAR = 1e-13
 #: A step is as long as the largest coordinate of a turn at most, or of its own start.
 _LONGEST = np.pi
+#: Where a step is what is left of the one before, to this part of what that one moved, rates are linear.
+_LINEAR = 0.1
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
@@ -104,16 +107,19 @@ def _scales(system: Hamiltonian, states: NDArray[np.float64]) -> _Scales:
 
 def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) -> NDArray[np.float64]:
     """Where Newton's method ends from each state, if it comes to an equilibrium."""
-    step = np.full(states.shape, np.inf)
-    longest = np.fmax(_LONGEST, np.abs(states[:, : states.shape[1] // 2]).max(axis=1, initial=0.0, keepdims=True))
+    n = states.shape[1] // 2
+    # Of coordinates and of what momenta make of them.
+    alike = np.concatenate([np.ones(n), scales.units[n:] / scales.units[:n]])
+    longest = np.fmax(_LONGEST, np.abs(states[:, :n]).max(axis=1, initial=0.0, keepdims=True))
+    step, left, moved = np.full(states.shape, np.inf), np.full(states.shape, np.inf), np.zeros(states.shape)
     at_kinks = [states[:0]]
     for _ in range(_STEPS):
         rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
         at_kinks.append(states[(rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))])
         finite = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
-        states, step, rates, slopes = states[finite], step[finite], rates[finite], slopes[finite]
-        longest = longest[finite]
+        states, longest, left, moved = (each[finite] for each in (states, longest, left, moved))
+        rates, slopes = rates[finite], slopes[finite]
         if not len(states):
             return np.concatenate(at_kinks)
         slopes = slopes * scales.units
@@ -122,9 +128,14 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) 
         most[most == 0.0] = 1.0
         step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), rates / most[..., 0])
         step = step * scales.units
-        length = np.abs(step).max(axis=1, keepdims=True)
-        states = states + step * (longest / np.maximum(length, longest))
-        if (length <= 1e-15 * (1.0 + np.abs(states).max(axis=1, keepdims=True))).all():
+        length = np.abs(step / alike).max(axis=1, keepdims=True)
+        # Linear rates lead however far.
+        linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
+        longest = np.where(linear & (length > longest), 2.0 * longest, longest)
+        share = longest / np.maximum(length, longest)
+        moved = step * share
+        states, left = states + moved, step - moved
+        if (np.abs(step) <= 1e-15 * (scales.sizes + np.abs(states))).all():
             break
     rates, slopes = rates_and_slopes(system, states)
     made_of = np.einsum("sij,sj->si", np.abs(slopes), np.abs(states) + np.abs(step))
@@ -134,7 +145,7 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) 
 
 
 def rates_and_slopes(
-    system: Hamiltonian, states: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
+    system: GeneralizedSystem, states: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rates (S, 2n) at states, and their derivatives (S, 2n, 2n)."""
     count, n = states.shape

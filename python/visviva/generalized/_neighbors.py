@@ -14,6 +14,8 @@ import numpy as np
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._calculus import Calculus
 from visviva.generalized._consistency import constraints_and_rates
+from visviva.generalized._fixed_points import rates_and_slopes
+from visviva.generalized._matrices import balanced_units
 from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
@@ -145,7 +147,9 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     model, neighbors = system._model.variational(), _Neighbors(system)
     parts = max(1, round(abs(t - system.t0) / interval))
     state = system._start()
-    frame = neighbors.directions(system.t0, state)
+    # Lengths of neighbors are of numbers in units in which their rates are alike: places and momenta are told apart.
+    units = balanced_units(rates_and_slopes(system, state[None])[1])[0][:, None]
+    frame = np.linalg.qr(neighbors.directions(system.t0, state) / units)[0] * units
     several = frame.shape[1]
     sums = np.zeros(several)
     if not several:
@@ -182,7 +186,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
             if failed is None and np.isfinite(result["y"][-1]).all():
                 last = result["y"][-1]
                 after, moved = neighbors.put_on(end, last[:n], last[n:].reshape(n, n)[:, :several])
-                turned, sizes = np.linalg.qr(moved)
+                turned, sizes = np.linalg.qr(moved / units)
                 stretch = np.abs(np.diag(sizes))
             # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal
             # again before that.
@@ -194,7 +198,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
                 middle = begin + 0.5 * (end - begin)
                 pending += [(middle, end), (begin, middle)]
                 continue
-            state, frame = after, turned
+            state, frame = after, turned * units
             sums, reached = sums + np.log(stretch), end
     except KeyboardInterrupt as stopped:
         done = None if reached == system.t0 else _exponents(sums, reached - system.t0)

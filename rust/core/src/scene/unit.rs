@@ -90,6 +90,8 @@ pub struct Prepared {
     pub reference: Origin,
     /// The size of a distance and of a velocity at the start.
     pub size: (f64, f64),
+    /// What a place and a velocity are not told from, whatever the tolerance.
+    pub rounding: (f64, f64),
     /// How its coordinates lie.
     pub shape: Shape,
     /// Its rigid bodies, if torques turn them.
@@ -141,6 +143,7 @@ impl Prepared {
             origin,
             reference: Origin::default(),
             size: (1.0, 1.0),
+            rounding: (0.0, 0.0),
             layout,
             units,
             scratch: RefCell::default(),

@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Above this many bodies the smallest separation is estimated from the mean density instead.
 const ALL_PAIRS: usize = 8192;
 
+/// So many roundings of a place an error of a step is not told from.
+const ROUNDINGS: f64 = 2.0;
+
 impl Prepared {
     /// Finds the unit's reference and size.
     ///
@@ -40,7 +43,24 @@ impl Prepared {
         let span = self.units.take(plan.span, [0, 0, 1]);
         let slow = if span > 0.0 { length / span } else { 1.0 };
         self.size = (length, if velocity > 0.0 { velocity } else { slow });
+        self.rounding = self.rounding_of_places(plan, length, ticker)?;
         Ok(())
+    }
+
+    /// What rounding of places does to places and velocities, where a force tells one place from another: what is far from
+    /// the origin is known to so much in every evaluation, however short the step.
+    fn rounding_of_places(&self, plan: &Plan, length: f64, ticker: &mut Ticker<'_>) -> Result<(f64, f64)> {
+        let forces = plan.forces_of(self.unit.copy);
+        let here = || forces.iter().filter(|force| !force.translation_invariant());
+        if here().next().is_none() {
+            return Ok((0.0, 0.0));
+        }
+        let far = self.position.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+        let bodies = self.bodies();
+        let rate = here().map(|force| force.rate(&bodies, self.units)).fold(0.0, f64::max);
+        let rate = rate.max((self.strongest(here(), plan, ticker)? / length).sqrt());
+        let place = ROUNDINGS * f64::EPSILON * far;
+        Ok((place, place * rate))
     }
 
     /// A length for a body that is where distances are measured from: what it passes and falls before the forces on it
@@ -122,13 +142,21 @@ impl Prepared {
 
     /// The largest acceleration that a force gives to a body of the unit, at rest where it is, in the course of the run.
     fn field_strength(&self, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<f64> {
+        self.strongest(plan.forces_of(self.unit.copy).iter(), plan, ticker)
+    }
+
+    fn strongest<'a>(
+        &self,
+        mut forces: impl Iterator<Item = &'a Arc<dyn ForceTerm>>,
+        plan: &Plan,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let bodies = self.bodies();
         // A force may begin, or vanish, where the run does.
         let times = [0.0, 0.5, 1.0].map(|share| plan.t0 + share * plan.direction * plan.span);
-        let of = |most: f64, force: &Arc<dyn ForceTerm>| {
+        forces.try_fold(0.0, |most: f64, force| {
             Ok(most.max(force.strongest(&bodies, self.units, times, ticker)?))
-        };
-        plan.forces_of(self.unit.copy).iter().try_fold(0.0, of)
+        })
     }
 
     /// Place in the scene, mass and position of each body.

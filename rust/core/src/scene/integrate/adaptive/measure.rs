@@ -47,10 +47,14 @@ fn weigh(norm: &mut Norm<Lanes>, unit: &Prepared, lanes: Bits) {
 /// The absolute tolerances of a unit's places or velocities, in its lanes.
 fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) {
     let units = job.plan.units;
-    let (size, exponent) =
-        if block.velocity { (unit.size.1, units.velocity()) } else { (unit.size.0, -units.length) };
+    let (size, rounding, exponent) = if block.velocity {
+        (unit.size.1, unit.rounding.1, units.velocity())
+    } else {
+        (unit.size.0, unit.rounding.0, -units.length)
+    };
+    let least = rounding.max(NOTHING * job.rtol * size);
     let given = job.atol.and_then(|atol| atol.kinds()[usize::from(block.velocity)]);
-    let at_least = |&atol: &f64| scale(atol, exponent).max(NOTHING * job.rtol * size);
+    let at_least = |&atol: &f64| scale(atol, exponent).max(least);
     match given {
         Some(each) if each.len() > 1 => {
             // Lanes without a body are held to what the first is.
@@ -66,7 +70,7 @@ fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) 
             }
         }
         one => {
-            let atol = one.and_then(<[f64]>::first).map_or(job.rtol * size, at_least);
+            let atol = one.and_then(<[f64]>::first).map_or((job.rtol * size).max(rounding), at_least);
             block.atol[0] = Lanes::select(lanes, Lanes::splat(atol), block.atol[0]);
         }
     }
