@@ -5,11 +5,16 @@ Bounds: simple zeros are met to some ten roundings of numbers of size 1 or π, 1
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 import sympy as sp
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 q, p, a = sp.symbols("q p a")
 
@@ -61,11 +66,30 @@ def test_they_are_those_of_the_lagrangian() -> None:
         assert min(np.abs(place.position - other.position).max() for other in ours) < 1e-14
 
 
+@pytest.mark.parametrize("system", [vv.systems.cart_pendulum, vv.systems.coupled_oscillators, vv.systems.pendulum])
+def test_both_formulations_find_the_same_stable(system: Callable[[], vv.Lagrangian]) -> None:
+    """A cart with a pendulum hanging from it was stable as a Lagrangian and unstable as a Hamiltonian."""
+    by_velocities, by_momenta = (
+        [(e.position.round(9).tolist(), e.stable) for e in form.equilibria()]
+        for form in (system(), system().hamiltonian())
+    )
+    assert by_velocities == by_momenta
+    assert {stable for _, stable in by_velocities} >= {True}
+
+
+def test_what_falls_along_a_level_direction_is_unstable() -> None:
+    """H falls like −q³ or −q⁴ where it is level to second order; it stays level along x."""
+    for power in (3, 4):
+        falls = vv.Hamiltonian(lambda q, p, t, power=power: (p[0] ** 2 + p[1] ** 2) / 2 - q[1] ** power, ["x", "y"])
+        (found,) = falls.equilibria(near=[[0.0, 0.1, 0.0, 0.0]])
+        assert not found.stable
+
+
 def test_along_a_cyclic_coordinate_one_is_told() -> None:
     x, y, px, py = sp.symbols("x y px py")
     (rest,) = vv.Hamiltonian((px**2 + py**2) / 2 + y**2 / 2, q=[x, y], p=[px, py]).equilibria()
     np.testing.assert_allclose(rest.position, 0.0, rtol=0, atol=1e-14)
-    assert not rest.stable  # x runs away from any small px
+    assert rest.stable  # but for a drift along x, as of the Lagrangian
 
 
 def test_parameters_starts_and_refusals() -> None:

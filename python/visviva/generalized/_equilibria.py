@@ -54,7 +54,8 @@ class Equilibrium(Record):
     position : ndarray, shape (n,)
     stable : bool
         Whether small motions about it stay small, as the linear equations tell, and the energy where these leave a
-        direction level: at a minimum of any order they do, where it falls they do not.
+        direction level: at a minimum of any order they do, where it falls they do not. A drift along places that are
+        all equilibria, as of what may be moved as a whole, does not count.
     frequencies : ndarray, shape (at most n,)
         Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)

@@ -250,11 +250,12 @@ def _energy(system: Hamiltonian) -> Energy:
 
 
 def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64]) -> bool | None:
-    """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known."""
+    """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known.
+
+    Where it stays level are equilibria, too: that a motion drifts along them does not count, as along a coordinate that
+    nothing depends on.
+    """
     known = set(np.sign(about.values[about.values != 0.0]))
     if len(known) > 1:
         return None
-    beside = set(rises(energy, state, about, off))
-    if {-1.0, 1.0} <= known | beside:
-        return False
-    return None if 0.0 in beside else True
+    return not {-1.0, 1.0} <= known | set(rises(energy, state, about, off))
