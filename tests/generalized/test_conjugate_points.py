@@ -97,3 +97,61 @@ def test_an_orbit_in_other_units(radius: float, speed: float, mass: float) -> No
     # The path between its times is known to h⁶; its rates to h⁴, which is what the eigenvalue feels.
     assert found.conjugate_points / period == pytest.approx([1.0], rel=1e-9, abs=0)
     assert found.eigenvalue * period**2 == pytest.approx(-0.7385093112, rel=1e-8, abs=0)
+
+
+@pytest.mark.parametrize("gauge", [1e3, 1e6, 1e12])
+def test_the_rate_of_a_function_changes_nothing(gauge: float) -> None:
+    """L + d/dt (K q²/2) has the same neighbors, whatever K."""
+    system = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - q[0] ** 2 / 2 + gauge * q[0] * v[0], ["x"])
+    found = system.accessory_problem((np.linspace(0.0, 10.0, 21), np.zeros((21, 1))))
+    assert found.conjugate_points == pytest.approx(np.pi * np.arange(1, 4), rel=2e-15, abs=0)
+    assert found.eigenvalue == pytest.approx((np.pi / 10) ** 2 - 1, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("count", [2, 3, 11, 201])
+def test_what_depends_on_the_time_between_the_times_of_a_path(count: int) -> None:
+    """A spring that is there for a twentieth of the time unit, along a path at rest that two times tell."""
+    pulse = vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 - 20 * np.exp(-(((t - 3.0) / 0.05) ** 2)) * q[0] ** 2 / 2, ["x"]
+    )
+    found = pulse.accessory_problem((np.linspace(0.0, 10.0, count), np.zeros((count, 1))))
+    # Jacobi's equation by mpmath's Taylor series, 25 digits.
+    assert found.conjugate_points == pytest.approx([3.724912522750921], rel=1e-12, abs=0)
+    assert found.eigenvalue == pytest.approx(-0.7253333605755329, abs=1e-12)
+
+
+def test_many_coordinates() -> None:
+    """A chain between walls, whose frequencies are 2 sin(kπ/2(n + 1))."""
+    n, time = 8, 10.0
+    chain = vv.Lagrangian(
+        lambda q, v, t: (
+            (
+                sum(x * x for x in v)
+                - sum(
+                    (b - a) ** 2
+                    for a, b in zip([0.0, *(q[i] for i in range(n))], [*(q[i] for i in range(n)), 0.0], strict=True)
+                )
+            )
+            / 2
+        ),
+        [f"q{i}" for i in range(n)],
+    )
+    frequencies = 2 * np.sin(np.arange(1, n + 1) * np.pi / (2 * (n + 1)))
+    found = chain.accessory_problem((np.linspace(0.0, time, 21), np.zeros((21, n))))
+    assert found.conjugate_points == pytest.approx(half_turns(list(frequencies), time), rel=5e-15, abs=0)
+    assert found.eigenvalue == pytest.approx((np.pi / time) ** 2 - frequencies[-1] ** 2, abs=1e-13)
+
+
+@pytest.mark.parametrize("rows", [21, 101, 501])
+def test_a_run_whose_rows_are_far_apart(rows: int) -> None:
+    """Of e = 0.9, whose pericenters are between rows: neighbors return after each revolution, and once between them."""
+    kepler = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 + 1 / np.sqrt(q[0] ** 2 + q[1] ** 2),
+        ["x", "y"],
+        position=[1.9, 0.0],
+        velocity=[0.0, np.sqrt(2 / 1.9 - 1)],
+    )
+    found = kepler.accessory_problem(kepler.run(np.linspace(0.0, 13.0, rows), rtol=1e-13))
+    # 7.23093628: Jacobi's equation by DOP853, beside the motion. What is off by 1e-13 of the orbit's size in a path is
+    # 1e-12 at its pericenter, and some hundred times that in what comes back from there.
+    assert found.conjugate_points == pytest.approx([2 * np.pi, 7.23093628, 4 * np.pi], abs=1e-8)

@@ -179,3 +179,25 @@ def test_starts_far_away_change_nothing_of_others() -> None:
         np.testing.assert_allclose(found.position, [0.0], rtol=0.0, atol=1e-15)
     (hanging,) = vv.systems.pendulum().hamiltonian().equilibria(near=[[1.5, 300.0]])
     np.testing.assert_allclose(hanging.position, [0.0], rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("far", [1e4, 1e7, 1e9])
+def test_starts_far_away_take_nothing_from_others(far: float) -> None:
+    """Their sizes were those of all: equilibria that others reached vanished, or were told unstable."""
+    wells = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + q[0] ** 2 / 2 - q[0] ** 4 / 4, ["x"])
+    starts = np.array([[-0.9], [0.1], [1.2], [far]])
+    for form, near in ((wells, starts), (wells.hamiltonian(), np.hstack([starts, 0 * starts]))):
+        found = form.equilibria(near=near)
+        np.testing.assert_allclose([e.position[0] for e in found], [-1.0, 0.0, 1.0], rtol=1e-14, atol=1e-14)
+        assert [e.stable for e in found] == [True, False, True]
+
+
+@pytest.mark.parametrize("start", [1e-4, 0.9, 1e4])
+def test_stability_is_judged_at_the_place(start: float) -> None:
+    """In units of forces where the search began a circular orbit was unstable, and so was √(1 + x²) at its minimum."""
+    radial = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2 + 1 / (2 * q[0] ** 2) - 1 / q[0], ["r"])
+    valley = vv.Hamiltonian(lambda q, p, t: p[0] ** 2 / 2 + np.sqrt(1 + q[0] ** 2), ["x"])
+    for system, place in ((radial, 1.0), (valley, 0.0)):
+        found = [e for e in system.equilibria(near=[[0.9, 0.0], [start, 0.0]]) if abs(e.position[0] - place) < 1e-9]
+        assert [e.stable for e in found] == [True]
+        np.testing.assert_allclose(found[0].frequencies, [1.0], rtol=1e-9, atol=0)

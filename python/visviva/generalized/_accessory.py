@@ -20,6 +20,8 @@ from visviva.generalized._jacobi_fields import Linear
 from visviva.generalized._path import as_path
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["AccessoryProblem", "accessory_problem"]
@@ -96,18 +98,24 @@ def accessory_problem(system: Lagrangian, path: Any, degree: int) -> AccessoryPr
 
 
 def _conjugate_points(linear: Linear) -> _Array:
-    """Give the times before the last at which neighbors come back, all found by bisection of their steps at once."""
+    """Give the times before the last at which neighbors come back, all of them at once."""
     found = linear.neighbors(0.0)
     steps = np.repeat(np.arange(len(found.returns)), found.returns)
-    turn = np.concatenate([np.arange(1, count + 1) for count in found.returns[found.returns > 0]] or [np.empty(0)])
+    turn = np.concatenate([np.arange(count) for count in found.returns[found.returns > 0]] or [np.empty(0, dtype=int)])
     pieces, first = found.pieces[steps], found.first[steps, None]
-    low, high = np.zeros(len(steps)), np.full(len(steps), found.width)
-    while ((low < (middle := 0.5 * (low + high))) & (middle < high)).any():
-        second = linear.second(pieces, first + linear.nodes * middle[:, None])
-        shorter = linear.flows(linear.matrices(second, 0.0), linear.lengths[pieces] * middle)
-        back = found.returned(steps, shorter) >= turn
-        low, high = np.where(back, low, middle), np.where(back, middle, high)
-    times: _Array = linear.path.t[pieces] + np.diff(linear.path.t)[pieces] * (first[:, 0] + high)
+
+    def beyond(width: _Array) -> _Array:
+        second = linear.second(pieces, first + linear.nodes * width[:, None])
+        shorter = linear.flows(linear.matrices(second, 0.0), linear.lengths[pieces] * width)
+        values, earlier = found.forms(steps, shorter)
+        # Like the part of the step, by which a form of a short one is divided.
+        beyond: _Array = -values[np.arange(len(steps)), turn + earlier] * width
+        return beyond
+
+    ends = np.full(len(steps), found.width)
+    after = beyond(ends)
+    widths = _passes(beyond, (np.zeros(len(steps)), ends), (-np.abs(after), after), found.width * _AT_THE_END)
+    times: _Array = linear.path.t[pieces] + np.diff(linear.path.t)[pieces] * (first[:, 0] + widths)
     before: _Array = times[linear.path.t[-1] - times > _AT_THE_END * linear.time]
     return before
 
@@ -115,28 +123,52 @@ def _conjugate_points(linear: Linear) -> _Array:
 def _eigenvalue(linear: Linear) -> float:
     """Give the smallest λ for which a conjugate point is at the end."""
     unit = np.pi**2
-    first = linear.neighbors(0.0)
-    low, high = (None, first) if first.any else (first, None)
-    below = above = 0.0
+    ahead = linear.neighbors(0.0).ahead
+    sign = 1.0 if ahead <= 0.0 else -1.0
+    near, ahead_near = 0.0, ahead
     for power in range(40):
-        if low is None:
-            below = -unit * 4.0**power
-            trial = linear.neighbors(below)
-            low, (high, above) = (None, (trial, below)) if trial.any else (trial, (high, above))
-        elif high is None:
-            above = unit * 4.0**power
-            trial = linear.neighbors(above)
-            (low, below), high = ((low, below), trial) if trial.any else ((trial, above), None)
-    if low is None or high is None:
-        raise ConvergenceError("the accessory problem has no smallest eigenvalue that is a number")
-    for step in range(200):
-        if above - below <= 1e-14 * max(abs(below), abs(above), unit):
+        far = sign * unit * 4.0**power
+        ahead_far = linear.neighbors(far).ahead
+        if (ahead_far > 0.0) != (ahead > 0.0):
             break
-        share = low.ahead / (low.ahead - high.ahead) if step % 2 and high.few else 0.5
-        middle = below + min(max(share, 0.01), 0.99) * (above - below)
-        trial = linear.neighbors(middle)
-        if trial.any:
-            high, above = trial, middle
-        else:
-            low, below = trial, middle
-    return float(0.5 * (below + above) / linear.time / linear.time)
+        near, ahead_near = far, ahead_far
+    else:
+        raise ConvergenceError("the accessory problem has no smallest eigenvalue that is a number")
+    ends, values = ((near, far), (ahead_near, ahead_far)) if sign > 0.0 else ((far, near), (ahead_far, ahead_near))
+    (found,) = _passes(
+        lambda trials: np.array([linear.neighbors(trial).ahead for trial in trials]),
+        (np.array(ends[:1]), np.array(ends[1:])),
+        (np.array(values[:1]), np.array(values[1:])),
+        1e-15 * max(abs(far), unit),
+    )
+    return float(found / linear.time / linear.time)
+
+
+def _passes(
+    function: Callable[[_Array], _Array], ends: tuple[_Array, _Array], values: tuple[_Array, _Array], within: float
+) -> _Array:
+    """Give where functions that rise pass 0 between two ends each, to a width.
+
+    In no more steps than bisection and one (I. F. D. Oliveira & R. H. C. Takahashi, ACM TOMS 47 (2020) 5).
+    """
+    (low, high), (below, above) = ends, values
+    if not len(low):
+        return low
+    first = high - low
+    most = int(np.ceil(np.log2(first.max() / within))) + 1
+    for step in range(most):
+        middle, width = 0.5 * (low + high), high - low
+        if not ((low < middle) & (middle < high) & (width > within)).any():
+            break
+        straight = (above * low - below * high) / np.where(above > below, above - below, 1.0)
+        side = np.sign(middle - straight)
+        toward = np.minimum(0.2 * width**2 / first, np.abs(middle - straight))
+        room = np.fmax(0.0, 0.5 * within * 2.0 ** (most - step) - 0.5 * width)
+        offset = np.abs(middle - straight) - toward
+        trial = middle - side * np.minimum(offset, room)
+        trial = np.where((low < trial) & (trial < high), trial, middle)
+        value = function(trial)
+        over = value > 0.0
+        low, below = np.where(over, low, trial), np.where(over, below, value)
+        high, above = np.where(over, trial, high), np.where(over, value, above)
+    return np.where(-below < above, low, high)

@@ -23,12 +23,15 @@ from visviva.generalized._multiple_zeros import at_rest, settled
 from visviva.generalized._stability import level_and_held
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._analysis import Linearization
+    from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["SAME", "Equilibrium", "equilibria", "starts_of_a_search"]
+__all__ = ["SAME", "Equilibrium", "by_sizes", "equilibria", "starts_of_a_search"]
 
 #: Places that differ by less than this part of their sizes are one.
 SAME = 1e-8
@@ -37,6 +40,11 @@ _MOST_STARTS = 2000
 _MOST_OF_MANY = 256
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
+#: Starts of which one is this many times as large as another are looked at by themselves: its rounding is no measure of
+#: what that one finds.
+_ALIKE = 1e3
+#: A place is known to this part of the size of the starts.
+_LOST = 1e-14
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -102,21 +110,65 @@ def starts_of_a_search(n: int) -> NDArray[np.float64]:
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
     n = len(system.coordinates)
-    if near is None:
-        starts = starts_of_a_search(n)
-        if system.position is not None:
-            starts = np.concatenate([starts, system.position[None, :]])
-    else:
+    if near is not None:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
+        sizes = np.abs(starts).max(axis=1, initial=0.0)
+        return by_sizes(system, starts, sizes, lambda group: _found(system, group, everywhere=False))
+    starts = starts_of_a_search(n)
+    if system.position is not None:
+        starts = np.concatenate([starts, system.position[None, :]])
+    return _found(system, starts, everywhere=True)
+
+
+def by_sizes(
+    system: Lagrangian | Hamiltonian,
+    starts: NDArray[np.float64],
+    sizes: NDArray[np.float64],
+    search: Callable[[NDArray[np.float64]], list[Equilibrium]],
+) -> list[Equilibrium]:
+    """What a search finds from starts (S, m) of sizes (S), those of about one size together: of several the nearest."""
+    distinguishing = np.ones(len(system.coordinates), dtype=bool)
+    distinguishing[system._structure["cyclic"]] = False
+    found: list[Equilibrium] = []
+    refused: InvalidInput | None = None
+    left = np.argsort(sizes, kind="stable")
+    while len(left):
+        # Where nothing is far from zero the next size is that of the group.
+        first = sizes[left][sizes[left] > 0.0]
+        together = sizes[left] <= _ALIKE * (first[0] if len(first) else 0.0)
+        group, left = left[together], left[~together]
+        try:
+            reached = search(starts[group])
+        except InvalidInput as refusal:
+            refused = refused or refusal
+            continue
+        size = float(sizes[group].max())
+        found += [each for each in reached if not any(_agree(each, other, size, distinguishing) for other in found)]
+    if refused is not None and not found:
+        raise refused
+    return sorted(found, key=lambda each: (*each.position, *each.momentum))
+
+
+def _agree(one: Equilibrium, other: Equilibrium, size: float, distinguishing: NDArray[np.bool_]) -> bool:
+    """Whether two equilibria are in one place, of which a search from starts of a size has found the first."""
+    apart = np.abs(one.position - other.position)[distinguishing].max(initial=0.0)
+    most = max(np.abs(one.position).max(initial=0.0), np.abs(other.position).max(initial=0.0))
+    momenta = np.abs(one.momentum - other.momentum).max(initial=0.0)
+    largest = max(np.abs(one.momentum).max(initial=0.0), np.abs(other.momentum).max(initial=0.0))
+    return bool(apart <= SAME * most + _LOST * size and momenta <= SAME * largest)
+
+
+def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool) -> list[Equilibrium]:
+    """Equilibria from starts (S, n) of about one size, or of those within a turn."""
     if system._constraints():
-        return _of_constrained(system, starts, everywhere=near is None)
-    sizes = Sizes(system)
+        return _of_constrained(system, starts, everywhere=everywhere)
+    n, sizes = len(system.coordinates), Sizes(system)
     reached = _reached(system, starts, sizes)
     distinguishing = np.ones(n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
-    if near is None:
+    if everywhere:
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
         reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]

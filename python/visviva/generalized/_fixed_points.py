@@ -14,7 +14,7 @@ import numpy as np
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
-from visviva.generalized._equilibria import SAME, Equilibrium, starts_of_a_search
+from visviva.generalized._equilibria import SAME, Equilibrium, by_sizes, starts_of_a_search
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
 from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
@@ -54,22 +54,28 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
             "H",
             "expected equations that do not depend on the time, which have equilibria; see flow_jacobian over a period",
         )
-    if near is None:
-        states = starts_of_a_search(2 * n)
-        # Momenta are zero in most equilibria.
-        states = np.concatenate([states, np.where(np.arange(2 * n) < n, states, 0.0)])
-    else:
+    if near is not None:
         states = np.atleast_2d(float_array("near", near, None))
         if states.shape[1] != 2 * n:
             raise InvalidInput(
                 "near", f"expected states of {n} coordinates and momenta, got an array of shape {states.shape}"
             )
+        sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
+        return by_sizes(system, states, sizes, lambda group: _found(system, group))
+    states = starts_of_a_search(2 * n)
+    # Momenta are zero in most equilibria.
+    return _found(system, np.concatenate([states, np.where(np.arange(2 * n) < n, states, 0.0)]), everywhere=True)
+
+
+def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool = False) -> list[Equilibrium]:
+    """Equilibria from starts (S, 2n) of about one size, or of those within a turn."""
+    n = len(system.coordinates)
     looked_at = np.abs(states).max(axis=0)
     scales = _scales(system, states)
     states = _reached(system, states, scales)
     distinguishing = np.ones(2 * n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
-    if near is None:
+    if everywhere:
         # All places along a cyclic coordinate are alike, and those beyond a turn are the same or far away.
         states[:, ~distinguishing] = 0.0
         states = states[np.abs(states[:, :n]).max(axis=1, initial=0.0) <= np.pi + 1e-6]
@@ -161,6 +167,10 @@ def rates_and_slopes(
 def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64], scales: _Scales) -> Equilibrium:
     n = len(system.coordinates)
     slopes, (units, size, _) = slopes_at(system, state), scales
+    others = np.abs(slopes) * (1.0 - np.eye(len(state)))
+    if np.isfinite(slopes).all() and others.any(axis=0).all() and others.any(axis=1).all():
+        # Slopes where the search began may be of quite another size.
+        units = balanced_units(slopes[None])[0]
     if not np.isfinite(slopes).all():
         raise InvalidInput(
             "H",

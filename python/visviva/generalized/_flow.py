@@ -272,9 +272,10 @@ class Flow:
 
         Notes
         -----
-        Lengths of small differences are √Σδ² of the numbers of the state as they are: places and velocities (momenta of
-        a Hamiltonian), in their units, whatever the mass matrix. Another norm, other units, or momenta for velocities
-        change an exponent over a time T by at most the logarithm of the ratios of the norms at both ends over T: not
+        Lengths of small differences are √Σδ² of the numbers of the state, places and velocities (momenta of a
+        Hamiltonian), in units in which their rates at the start depend on each other alike (powers of two of those
+        given, 1 where they tell none). Another norm, or momenta for velocities, change an exponent over a time T by
+        at most the logarithm of the ratios of the norms at both ends over T: not
         what it tends to while the motion keeps to where those are bounded. Exponents of a Hamiltonian without further
         forces add up to 0; those of a Lagrangian to ln(det M(start) / det M(end)) / T of the mass matrix M, which
         tends to it.

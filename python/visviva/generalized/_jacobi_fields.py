@@ -32,6 +32,10 @@ _STAGES = 6
 #: The length of a step times the fastest rate of the linear equation: what order 12 leaves is then below round-off.
 _RATE = 0.25
 _MOST_STEPS = 100_000
+#: Steps of what depends on the time by itself, at least: what the path's own times need not tell.
+_FEWEST_IN_TIME = 64
+#: The last coefficients of what is in a step are no larger beside ∂²L/∂q̇∂q̇: what order 12 leaves is then round-off.
+_RESOLVED = 1e-7
 #: The sine of the angle between what comes back to the first point and what would, below which a step goes on from the
 #: one before: rounding decides there which of two steps a conjugate point is in, and both may count it, or neither.
 _NEAR = 1e-6
@@ -42,16 +46,18 @@ _MOST_JOINED = 8
 class Linear:
     """The accessory equation along a path, in places η and momenta P η̇ + Cᵀη, by collocation.
 
-    In units in which the path takes the time one, and ∂²L/∂q̇∂q̇ has diagonal elements about one halfway.
+    In units in which the path takes the time one, and ∂²L/∂q̇∂q̇ has diagonal elements about one halfway; without the
+    mean of ηᵀSη̇ with a symmetric S, the rate of ηᵀSη/2: it changes no motion, and would cost digits.
     """
 
     def __init__(self, system: Lagrangian, path: Path) -> None:
         self.path, self.n = path, len(system.coordinates)
         self.time = float(path.t[-1] - path.t[0])
         self.lengths = np.diff(path.t) / self.time
-        self._hessian, self._units = hessian(system), np.ones(self.n)
+        self._hessian, self._units, self._rate = hessian(system), np.ones(self.n), np.zeros((2 * self.n, 2 * self.n))
         self.nodes, self._weights = _collocation()
-        self._known: dict[int, tuple[_Array, _Array]] = {}
+        self._last = _last_coefficients(self.nodes)
+        self._known: dict[int, _Coefficients] = {}
         every = np.arange(len(self.lengths))
         kinetic = self.second(every, np.full((len(every), 1), 0.5))[:, 0, self.n :, self.n :]
         diagonal = np.diagonal(kinetic, axis1=-2, axis2=-1)
@@ -62,13 +68,17 @@ class Linear:
             raise _without_minimum()
         # Powers of two: no digit of the coefficients changes.
         self._units = np.exp2(np.rint(np.log2(sizes).mean(axis=0)))
+        mixed = self.second(every, np.full((len(every), 1), 0.5))[:, 0, : self.n, self.n :].mean(axis=0)
+        self._rate[: self.n, self.n :] = 0.5 * (mixed + mixed.T)
+        self._rate[self.n :, : self.n] = self._rate[: self.n, self.n :].T
+        self._fewest = 1 if system.autonomous else _FEWEST_IN_TIME
 
     def second(self, pieces: NDArray[np.intp], u: _Array) -> _Array:
         """Give the second derivatives of L by (η, η̇), in the units of this class."""
         q, v = self.path.at(pieces, u)
         t = self.path.t[pieces][:, None] + u * np.diff(self.path.t)[pieces][:, None]
         units = np.concatenate([self.time / self._units, 1.0 / self._units])
-        scaled: _Array = self._hessian(t, q, v) * units[:, None] * units
+        scaled: _Array = self._hessian(t, q, v) * units[:, None] * units - self._rate
         return scaled
 
     def matrices(self, second: _Array, shift: float) -> _Array:
@@ -95,23 +105,36 @@ class Linear:
 
     def _parts(self, shift: float) -> int:
         """Give how many steps a piece is cut in."""
-        second = self.second(np.arange(len(self.lengths)), np.full((len(self.lengths), 1), 0.5))
+        count = len(self.lengths)
+        second = self.second(np.arange(count), np.full((count, 1), 0.5))
         rates = np.abs(np.linalg.eigvals(self.matrices(second, shift))).max(axis=(1, 2))
-        parts = np.ceil((rates * self.lengths).max() / _RATE)
-        if not parts * len(rates) <= _MOST_STEPS:
-            raise ConvergenceError("the path is too long for its fastest motion: cut it")
+        parts = max(1.0, np.ceil((rates * self.lengths).max() / _RATE), np.ceil(self._fewest / count))
         # A power of two, so that steps for other shifts are often the same.
-        return 1 << max(0, int(parts) - 1).bit_length()
+        while parts * count <= _MOST_STEPS:
+            whole = 1 << (int(parts) - 1).bit_length()
+            if whole not in self._known:
+                self._known[whole] = self._coefficients(whole)
+            if self._known[whole].resolved:
+                return whole
+            parts = 2 * whole
+        raise ConvergenceError("the path is too long for its fastest motion: cut it")
+
+    def _coefficients(self, parts: int) -> _Coefficients:
+        pieces = np.repeat(np.arange(len(self.lengths)), parts)
+        first = np.tile(np.arange(parts), len(self.lengths))[:, None] / parts
+        second, lengths = self.second(pieces, first + self.nodes / parts), self.lengths[pieces] / parts
+        # Of the polynomial through what is at the nodes, the last two coefficients, as parts of ∂²L/∂q̇∂q̇.
+        tails = np.abs(np.einsum("di,kiab->kdab", self._last, second)).sum(axis=1)
+        sizes = np.sqrt(np.abs(np.diagonal(second, axis1=-2, axis2=-1)[..., self.n :]).max(axis=1))
+        sizes = np.concatenate([sizes / lengths[:, None], sizes], axis=-1)
+        resolved = bool((tails <= _RESOLVED * sizes[:, :, None] * sizes[:, None, :]).all())
+        return _Coefficients(pieces, first, second, lengths, resolved)
 
     def neighbors(self, shift: float) -> Neighbors:
         """Give the neighbors from the first point on, and how often they come back."""
-        parts, count = self._parts(shift), len(self.lengths)
-        pieces = np.repeat(np.arange(count), parts)
-        first = np.tile(np.arange(parts), count)[:, None] / parts
-        if parts not in self._known:
-            self._known[parts] = self.second(pieces, first + self.nodes / parts), self._local(pieces, first, parts)
-        second, local = self._known[parts]
-        flows = self.flows(self.matrices(second, shift), self.lengths[pieces] / parts)
+        known = self._known[parts := self._parts(shift)]
+        local = known.local = self._local(known) if known.local is None else known.local
+        flows = self.flows(self.matrices(known.second, shift), known.lengths)
         n = self.n
         frames = np.empty((len(flows) + 1, 2 * n, n))
         frames[0] = np.concatenate([np.zeros((n, n)), np.eye(n)])
@@ -121,25 +144,41 @@ class Linear:
             frames[step] = frame
             frames[step + 1] = flows[step] @ frame
         smallest = np.linalg.svd((local @ frames[:-1])[:, :n], compute_uv=False).min(axis=-1)
-        starts, returns = _starts(smallest < _NEAR), _returns(frames[:-1], flows)
-        found = Neighbors(pieces, first[:, 0], 1.0 / parts, frames, flows, starts, returns)
+        starts, returns = _starts(smallest < _NEAR), (_forms(frames[:-1], flows) < 0.0).sum(axis=-1)
+        found = Neighbors(known.pieces, known.first[:, 0], 1.0 / parts, frames, flows, starts, returns)
         for step in np.flatnonzero(starts < np.arange(len(flows))).tolist():
-            returns[step] = found.returned(np.array([step]), flows[[step]])[0]
+            values, earlier = found.forms(np.array([step]), flows[[step]])
+            returns[step] = max(0, int((values < 0.0).sum()) - int(earlier[0]))
         return found
 
-    def _local(self, pieces: NDArray[np.intp], first: _Array, parts: int) -> _Array:
+    def _local(self, known: _Coefficients) -> _Array:
         """Give the units of steps: √P η/√h and √h P⁻¹ᐟ² π, which a free motion mixes evenly."""
         n = self.n
         try:
-            roots = np.swapaxes(np.linalg.cholesky(self.second(pieces, first)[:, 0, n:, n:]), -1, -2)
+            roots = np.linalg.cholesky(self.second(known.pieces, known.first)[:, 0, n:, n:])
         except np.linalg.LinAlgError:
             raise _without_minimum() from None
-        h = np.sqrt(self.lengths[pieces] / parts)[:, None, None]
+        roots = np.swapaxes(roots, -1, -2)
+        h = np.sqrt(known.lengths)[:, None, None]
         none = np.zeros_like(roots)
         momenta = h * np.swapaxes(np.linalg.inv(roots), -1, -2)
         return np.concatenate(
             [np.concatenate([roots / h, none], axis=-1), np.concatenate([none, momenta], axis=-1)], axis=-2
         )
+
+
+@dataclass(slots=True)
+class _Coefficients:
+    """Steps, a number of them to each piece, and the second derivatives of L at their nodes."""
+
+    pieces: NDArray[np.intp]
+    first: _Array
+    second: _Array
+    lengths: _Array
+    #: Whether a polynomial through the nodes tells what is between them.
+    resolved: bool
+    #: Units of the steps, once they were asked for.
+    local: _Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,32 +195,28 @@ class Neighbors:
     starts: NDArray[np.intp]
     returns: NDArray[np.int64]
 
-    def returned(self, steps: NDArray[np.intp], shorter: _Array) -> NDArray[np.int64]:
-        """Give how often they come back in parts of steps."""
+    def forms(self, steps: NDArray[np.intp], shorter: _Array) -> tuple[_Array, NDArray[np.int64]]:
+        """Give the values (K, n) of which those below 0 count returns in parts of steps, and those before the steps."""
         starts, flows = self.starts[steps], shorter.copy()
         earlier = np.zeros(len(steps), dtype=np.int64)
         for back in range(1, _MOST_JOINED + 1):
             joined = np.flatnonzero(steps - back >= starts)
             flows[joined] = flows[joined] @ self.flows[steps[joined] - back]
             earlier[joined] += self.returns[steps[joined] - back]
-        counted: NDArray[np.int64] = np.maximum(0, _returns(self.frames[starts], flows) - earlier)
-        return counted
+        return _forms(self.frames[starts], flows), earlier
 
     @property
     def any(self) -> bool:
         return bool(self.returns.any())
 
     @property
-    def few(self) -> bool:
-        return bool(self.returns.sum() <= 1)
-
-    @property
     def ahead(self) -> float:
-        """How far the neighbors are past the end's point, or what they lack, as angles that grow evenly."""
+        """How far the neighbors are past the end's point, or what they lack, as an angle that grows evenly."""
         a, b = np.split(self.frames[-1], 2)
         turned = np.linalg.solve((b - 1j * np.pi * a).T, (b + 1j * np.pi * a).T)
         angles = np.angle(np.linalg.eigvals(turned)) % (2.0 * np.pi)
-        return float(angles.min()) if self.any else float(angles.max()) - 2.0 * np.pi
+        turns = 2.0 * np.pi * (int(self.returns.sum()) - 1)
+        return float(angles.min()) + turns if self.any else float(angles.max()) + turns
 
 
 def _without_minimum() -> InvalidInput:
@@ -189,14 +224,13 @@ def _without_minimum() -> InvalidInput:
     return InvalidInput("path", expected)
 
 
-def _returns(frames: _Array, flows: _Array) -> NDArray[np.int64]:
-    """Give the conjugate points in steps that each is free of in itself: negative eigenvalues of Aᵀb⁻¹(aA + bB)."""
+def _forms(frames: _Array, flows: _Array) -> _Array:
+    """Give the eigenvalues of Aᵀb⁻¹(aA + bB), ascending."""
     n = frames.shape[-1]
     places, momenta = frames[..., :n, :], frames[..., n:, :]
     a, b = flows[..., :n, :n], flows[..., :n, n:]
     form = np.swapaxes(places, -1, -2) @ (np.linalg.solve(b, a @ places) + momenta)
-    negative: NDArray[np.int64] = (np.linalg.eigvalsh(form + np.swapaxes(form, -1, -2)) < 0.0).sum(axis=-1)
-    return negative
+    return np.asarray(np.linalg.eigvalsh(form + np.swapaxes(form, -1, -2)), dtype=float)
 
 
 def _starts(near: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -207,6 +241,11 @@ def _starts(near: NDArray[np.bool_]) -> NDArray[np.intp]:
         if step - starts[step - 1] < _MOST_JOINED:
             starts[step] = starts[step - 1]
     return starts
+
+
+def _last_coefficients(nodes: _Array) -> _Array:
+    """Give the weights (2, nodes) of the last two Legendre coefficients of what is at the nodes."""
+    return np.asarray(np.linalg.inv(np.polynomial.legendre.legvander(2.0 * nodes - 1.0, _STAGES - 1))[-2:], dtype=float)
 
 
 def _collocation() -> tuple[_Array, Callable[[_Array], _Array]]:

@@ -20,11 +20,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._system import GeneralizedSystem
 
 __all__ = ["Path", "as_path"]
 
 #: Polynomials of higher degree through many places swing between them.
 _HIGHEST_DEGREE = 9
+#: What polynomials of degree five between rows of a run may be off, as a part of how far it is from the origin there, for
+#: which this part of the farthest counts at least. The time between two rows is cut for it in so many parts at most, and
+#: these in as many again in each further round, up to so many rows.
+_FOLLOWED = 1e-13
+_NEAREST = 1e-3
+_MOST_PARTS = 16
+_ROUNDS = 4
+_MOST_ROWS = 50_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +61,8 @@ def as_path(system: Lagrangian, path: Any, degree: int, *, ascending: bool = Fal
     """Give the path that a user means: a run of a Lagrangian, or times and places.
 
     A run backward in time is a path backward in time, whose integrals are from its first time to its last, unless
-    ``ascending`` asks for the same path from its earliest time on.
+    ``ascending`` asks for the same path from its earliest time on; with as many more places between those of the run
+    as its polynomials need to follow the equations of motion.
     """
     n = len(system.coordinates)
     if isinstance(path, GeneralizedTrajectory):
@@ -100,6 +110,57 @@ def _path_of_run(out: GeneralizedTrajectory, n: int, ascending: bool) -> Path:
     _times(out.t[back])
     order = back if ascending else slice(None)
     t, states = out.t[order], out._states[order]
+    return _followed(system, t, states) if ascending else _through(system, t, states)
+
+
+def _followed(system: GeneralizedSystem, t: NDArray[np.float64], states: NDArray[np.float64]) -> Path:
+    """Give the path through the rows of a run, and between them where the equations of motion lead on from each."""
+    n = states.shape[1] // 2
+    size = np.abs(states[:, :n]).max(axis=0)
+    size[size == 0.0] = 1.0
+    path, looked_at = _through(system, t, states), np.arange(len(t) - 1)
+    for _ in range(_ROUNDS):
+        middles = path.at(looked_at, np.full((len(looked_at), 1), 0.5))[0][:, 0]
+        times, more, parts = [t], [states], np.ones(len(t) - 1, dtype=int)
+        for piece, told in zip(looked_at.tolist(), middles, strict=True):
+            begin, width = t[piece], t[piece + 1] - t[piece]
+            middle = _led_on(system, states[piece], begin, begin + np.array([0.5]) * width)
+            if middle is None:
+                continue
+            away = max(_NEAREST, float((np.abs(told) / size).max()))
+            off = float((np.abs(middle[0, :n] - told) / size).max()) / away
+            # The error of polynomials of degree five between rows.
+            wanted = min(_MOST_PARTS, int(np.ceil((off / _FOLLOWED) ** (1.0 / 6.0))))
+            between = begin + np.arange(1, wanted) / max(1, wanted) * width
+            if wanted > 1 and (found := _led_on(system, states[piece], begin, between)) is not None:
+                parts[piece] = wanted
+                times.append(between)
+                more.append(found)
+        if len(times) == 1 or parts.sum() > _MOST_ROWS:
+            break
+        every = np.concatenate(times)
+        order = np.argsort(every, kind="stable")
+        t, states = every[order], np.concatenate(more)[order]
+        path, looked_at = _through(system, t, states), np.flatnonzero(np.repeat(parts, parts) > 1)
+    return path
+
+
+def _led_on(
+    system: GeneralizedSystem, state: NDArray[np.float64], begin: float, times: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Give states (T, 2n) at times after one, if the equations of motion lead there."""
+    asked, _ = system._asked(float(times[-1]), "gauss16", 1e-13, None, None)
+    asked |= {"span": (begin, float(times[-1])), "outputs": times}
+    result = system._model.run(asked, state[None, :], system._values[None, :], 1, None)
+    if result["interrupted"]:
+        raise KeyboardInterrupt
+    found: NDArray[np.float64] = result["y"]
+    return found if result["failures"][0] is None and len(found) == len(times) else None
+
+
+def _through(system: GeneralizedSystem, t: NDArray[np.float64], states: NDArray[np.float64]) -> Path:
+    """Give the path through states (T, 2n), whose accelerations the equations of motion tell."""
+    n = states.shape[1] // 2
     q, v = states[:, :n], states[:, n:]
     a = system._model.rates(np.ascontiguousarray(t), np.ascontiguousarray(states), system._values[None, :])
     h = np.diff(t)[:, None]

@@ -207,7 +207,8 @@ class Variations:
         Parameters
         ----------
         path, degree
-            As in `action`; at times that are close enough to tell its shape.
+            As in `action`. Between rows of a run that are far apart it is followed as the equations of motion lead on;
+            places are to be at times that are close enough to tell the shape of their path.
 
         Returns
         -------

@@ -174,7 +174,7 @@ impl ForceTerm for ExpressionForce {
         ticker: &mut Ticker<'_>,
     ) -> Result<(Scaled, Scaled)> {
         let Expressions { force, potential, parameters, needs, .. } = &self.expressions;
-        if needs.time {
+        if needs.time || needs.velocities() {
             return Ok((Scaled::ZERO, Scaled::from(f64::NAN)));
         }
         let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
@@ -185,8 +185,7 @@ impl ForceTerm for ExpressionForce {
             let place = bodies.vector(Of::Position, body);
             let whole = |value: DoubleDouble, unit: i32| scale(value.to_f64(), unit);
             let position = place.map(|x| whole(x, bodies.units.length));
-            let velocity = bodies.vector(Of::Velocity, body).map(|v| whole(v, bodies.units.speed));
-            let state = self.place.local(position, velocity);
+            let state = self.place.local(position, [0.0; 3]);
             if let Some(potential) = &mut potential {
                 let mut value = [0.0];
                 potential.evaluate(0.0, &state, &mut value);

@@ -150,7 +150,11 @@ pub struct LaneBody {
     pub moments: [Lanes; 3],
     /// Their inverses, 0 about the axis of a rod.
     pub inverse: [Lanes; 3],
-    /// The same and their differences, to more digits.
+    /// Whether it is a rod in some lane.
+    pub rod: bool,
+    /// Its axis, 0 where it is no rod.
+    pub axis: [Lanes; 3],
+    /// Inverses and their differences, to more digits.
     pub exact: Inverses<Lanes>,
     /// Of two moments that agree, the inverse.
     pub pair: Lanes,
@@ -259,6 +263,8 @@ impl LaneBody {
             row,
             moments: vector(|start| start.moments),
             inverse: [0, 1, 2].map(|c| of(&|start| inverse(start.moments[c]))),
+            rod: starts.iter().any(|start| start.moments.contains(&0.0)),
+            axis: [0, 1, 2].map(|c| of(&|start| f64::from(u8::from(start.moments[c] == 0.0)))),
             exact: Inverses {
                 inverse: rounded(|start| Inverses::of(start.moments).inverse),
                 differences: rounded(|start| Inverses::of(start.moments).differences),

@@ -4,7 +4,7 @@
 
 use super::bodies::{Arrangement, LaneBody, Symmetric};
 use super::turn::{self, Inverses};
-use super::vectors::{cross, times_plus, turned, turned_back, turned_back_by_all};
+use super::vectors::{cross, dot, times_plus, turned, turned_back, turned_back_by_all};
 use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
@@ -92,7 +92,7 @@ impl Pass<Lanes> for KickDrift<'_> {
             let kick = V::scaled(kick);
             for (body, of) in bodies.iter().enumerate() {
                 let at = self.arrangement.at(body);
-                let twist = twist::<V>(of, *rows, (q, a), torque, body);
+                let twist = twist::<V>(of, *rows, (q, a), torque, (body, at));
                 for c in 0..3 {
                     let change = kick.0.multiply_add(twist[c], kick.1 * twist[c]);
                     (v[at + c], v_rest[at + c]) = add_compensated(v[at + c], v_rest[at + c], change);
@@ -239,14 +239,15 @@ impl Pass<Lanes> for Hold<'_> {
     }
 }
 
-/// The torque on a body, about its center or about the point that is held.
+/// The torque on a body, about its center or about the point that is held; on a rod what is across it, as it does not turn
+/// about its axis.
 #[inline(always)]
 pub(super) fn twist<V: View<Lanes>>(
     of: &LaneBody,
     rows: usize,
     (q, a): (&[V], &[V]),
     torque: &[V],
-    body: usize,
+    (body, at): (usize, usize),
 ) -> [V; 3] {
     let mut twist = [V::zero(); 3];
     if !torque.is_empty() {
@@ -259,6 +260,14 @@ pub(super) fn twist<V: View<Lanes>>(
             pull[c] = V::load(of.mass) * a[c * rows + of.row];
         }
         twist = times_plus(cross(arm, pull), V::one(), twist);
+    }
+    if of.rod {
+        let mut axis = twist;
+        for c in 0..3 {
+            axis[c] = V::load(of.axis[c]);
+        }
+        let axis = turned([q[at], q[at + 1], q[at + 2], q[at + 3]], axis);
+        twist = times_plus(axis, -dot(axis, twist), twist);
     }
     twist
 }

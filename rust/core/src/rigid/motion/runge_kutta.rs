@@ -157,7 +157,7 @@ impl Pass<Lanes> for Rates<'_> {
                 let sums = V::view(sums);
                 omega = inverse_differential(times([sums[at], sums[at + 1], sums[at + 2]], h), omega);
             }
-            let twist = twist::<V>(of, *rows, (q, a), torque, body);
+            let twist = twist::<V>(of, *rows, (q, a), torque, (body, at));
             [of_q[at], of_q[at + 1], of_q[at + 2]] = omega;
             [of_v[at], of_v[at + 1], of_v[at + 2]] = twist;
         }

@@ -140,7 +140,7 @@ impl Pass<Lanes> for Rates<'_> {
                 of_q[at + c] = to[3].multiply_add(half[c], across[c]);
             }
             of_q[at + 3] = -dot(axis, half);
-            [of_v[at], of_v[at + 1], of_v[at + 2]] = twist::<V>(of, *rows, (q, a), torque, body);
+            [of_v[at], of_v[at + 1], of_v[at + 2]] = twist::<V>(of, *rows, (q, a), torque, (body, at));
             of_v[at + 3] = V::zero();
             if *pivoted {
                 // The velocity of its center follows from its turning, and so does the rate of that.
