@@ -443,7 +443,7 @@ class GeneralizedModel:
         self, t: float, state: NDArray[np.float64], parameters: NDArray[np.float64]
     ) -> tuple[list[float], list[float], NDArray[np.float64]]: ...
     def equilibria(
-        self, t: float, starts: NDArray[np.float64], parameters: NDArray[np.float64]
+        self, t: float, starts: NDArray[np.float64], parameters: NDArray[np.float64], descending: bool
     ) -> list[tuple[list[float], bool] | None]: ...
     def matrices(
         self, t: float, states: NDArray[np.float64], parameters: NDArray[np.float64]

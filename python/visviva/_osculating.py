@@ -87,10 +87,13 @@ def elements_of(
     else:
         chosen = body_indices("bodies", bodies, names, count)
         _check_chosen(chosen, parent, names)
-    if isinstance(parent, int) and gone[..., parent].any():
-        raise InvalidInput(
-            "about", f"expected a body by itself, but {body_label(parent, names)} has become a part of another"
-        )
+    if isinstance(parent, int):
+        if gone[..., parent].any() and not (isinstance(start, EnsembleScene) and len(mass) > 1):
+            raise InvalidInput(
+                "about", f"expected a body by itself, but {body_label(parent, names)} has become a part of another"
+            )
+        # In a copy nothing is about it from then on.
+        gone = gone | gone[..., parent, None]
     with np.errstate(over="ignore", invalid="ignore"):  # _check says it by name
         parts = _relative(position, velocity, mass, chosen, parent)
     axes = (*position.shape[:-2], len(chosen))
@@ -100,7 +103,7 @@ def elements_of(
         part = gone[..., body, None]
         r[..., column, :], v[..., column, :] = np.where(part, np.nan, apart), np.where(part, np.nan, rate)
         with np.errstate(over="ignore"):
-            mu[..., column] = constant * (attracting + mass[..., body])
+            mu[..., column] = np.where(part[..., 0], 1.0, constant * (attracting + mass[..., body]))
         lost = ~np.isfinite(apart) & np.isfinite(position[..., body, :])
         _check(r[..., column, :], lost, mu[..., column], attracting, body_label(body, names), parent, names)
     found, along = _conics(mu, r, v), dict(rows or {})

@@ -68,7 +68,7 @@ class Totals:
     def virial(self) -> NDArray[np.float64]:
         """The virial Σ r·F, shape (T,), or (B, T), an energy in the units of the scene.
 
-        NaN beside forces that look at velocities (drag, magnetic fields): it is that of potentials.
+        NaN beside forces that look at velocities or times (drag, magnetic fields, drives): it is that of potentials.
 
         Examples
         --------

@@ -84,7 +84,7 @@ class Conservation(Shown):
     virial : float
         ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
         in a bound system. NaN if positions or velocities were not recorded, with rigid
-        bodies, and beside forces that look at velocities.
+        bodies, and beside forces that look at velocities or times.
     about : str
         The reference point of the angular momentum.
     massless : int

@@ -53,7 +53,7 @@ class Invariants(Shown):
     center_of_mass_kinetic_energy, internal_kinetic_energy : float
         König's split of the kinetic energy: P²/2M and the rest.
     virial : float
-        Σ r·F; NaN beside forces that look at velocities (drag, magnetic fields).
+        Σ r·F; NaN beside forces that look at velocities or times (drag, magnetic fields, drives).
 
     References
     ----------

@@ -209,9 +209,10 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
             ensemble; vectors with a last axis of 3. Angles are in radians, x the reference direction, z the pole. What
             they are for circular, planar, parabolic and radial orbits is said in `visviva.orbits.Elements`. Rows that a
             failed copy of an ensemble does not have are NaN, as its states are; and those of a body after it has merged
-            into another, which then has the mass of both. Lengths, times and masses are in the units of the scene. In a
-            `RotatingFrame` orbits are those of the velocities in an inertial frame, v + Ω × r, seen along the axes of
-            that instant: sizes and shapes stay, and angles turn.
+            into another, which then has the mass of both, and of copies in which that has merged which they are about.
+            Lengths, times and masses are in the units of the scene. In a `RotatingFrame` orbits are those of the
+            velocities in an inertial frame, v + Ω × r, seen along the axes of that instant: sizes and shapes stay, and
+            angles turn.
 
         Raises
         ------

@@ -271,3 +271,13 @@ def test_lyapunov_exponents_of_any_mass(mass: float) -> None:
         return pendulum.lyapunov_exponents(30.0)
 
     np.testing.assert_allclose(swinging(mass), swinging(1.0), rtol=0, atol=2 * np.log(2.0) / 30)
+
+
+@pytest.mark.parametrize("start", [1.2, 1.35, 1.4, 0.3])
+def test_a_step_that_would_lead_over_a_singularity_is_shortened(start: float) -> None:
+    """Of a planet's radius: beside the turn of its potential Newton's method stepped to the other side of the Sun."""
+    radial = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - 1 / (2 * q[0] ** 2) + 1 / q[0], ["r"])
+    for found in (radial.equilibria(near=[[start]]), radial.hamiltonian().equilibria(near=[[start, 0.0]])):
+        assert [e.stable for e in found] == [True]
+        np.testing.assert_allclose(found[0].position, [1.0], rtol=1e-13, atol=0)
+        np.testing.assert_allclose(found[0].frequencies, [1.0], rtol=1e-12, atol=0)

@@ -245,6 +245,18 @@ def test_planetesimals_become_one_and_columns_know_it() -> None:
         out.elements(about=int(gone[0]))
 
 
+def test_elements_of_copies_in_some_of_which_the_center_has_merged() -> None:
+    """All copies were refused for the one."""
+    places, velocity = [[0.0, 0, 0], [3, 0, 0], [6.0, 0.1, 0]], np.array([[1.0, 0, 0], [-0.5, 0, 0], [-1, 0, 0]])
+    scene = spheres([1.0, 2.0, 3.0], places, velocity, 0.3, vv.Gravity(0.05))
+    out = scene.ensemble(velocity=[velocity, -velocity]).run([0.0, 1.0, 5.0], collisions="merge")
+    assert set(out.collisions.member) == {0}
+    found = out.elements(about=0).semi_major_axis
+    np.testing.assert_array_equal(found[1], out[1].elements(about=0).semi_major_axis)
+    assert np.isfinite(found[0, :2]).all()
+    assert np.isnan(found[0, 2]).all()
+
+
 @pytest.mark.parametrize("mass", [0.0, 1e-30])
 def test_a_light_ball_between_two_that_come_together_bounces_infinitely_often(mass: float) -> None:
     """A run past the end hung. Each bounce adds twice the speed of a wall: after n of them the gap is as 1/n."""

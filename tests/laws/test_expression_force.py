@@ -299,3 +299,15 @@ def test_a_force_prints_as_its_formula(force: vv.forces.Force, shown: str) -> No
     """And not as the table of numbers that it keeps."""
     assert repr(force) == f"ExpressedForce({shown})"
     assert shown in repr(vv.Scene(bodies(), force).forces)
+
+
+def test_the_virial_beside_a_force_that_looks_at_velocities() -> None:
+    """From positions alone it was that of bodies at rest: it is none, recorded or computed afterwards."""
+    force = vv.ExpressionForce(force=lambda r, v, t: (-v[0], -v[1] - r[1], 0.0 * v[0]))
+    scene = vv.Scene(vv.Particles([2.0], [[1.0, 2.0, 0.0]], [[3.0, 1.0, 0.0]]), force)
+    recorded = scene.run(t=[0.0, 1.0], record=["position", "velocity", "virial"])
+    for virial in (recorded.virial, scene.run(t=[0.0, 1.0]).virial, scene.invariants().virial):
+        assert np.isnan(virial).all()
+    still = vv.ExpressionForce(force=lambda r, v, t: (-r[0], -r[1], 0.0 * r[0]))
+    out = vv.Scene(scene.particles, still).run(t=[0.0, 1.0])
+    np.testing.assert_allclose(out.virial, -(out.position[:, 0] ** 2).sum(axis=-1), rtol=1e-14, atol=0)

@@ -195,3 +195,15 @@ def test_bad_input(call, argument, words):
     with pytest.raises(vv.InvalidInput, match=words) as caught:
         call()
     assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize("theta", [0.3, 1.2, 2.5])
+def test_steady_precession_is_steady(theta):
+    """Its own rates, which are rounded, were told a wave; a millionth more is one."""
+    for rate in SIMO_WONG.steady_precession(theta, spin=50.0):
+        found = SIMO_WONG.nutation(theta, psi_dot=50.0 - rate * np.cos(theta), phi_dot=rate)
+        assert found.kind == "steady"
+        # The bend of F about its double root: what rounding moves it by.
+        assert found.theta_max - found.theta_min < 1e-14
+        beside = SIMO_WONG.nutation(theta, psi_dot=50.0 - rate * np.cos(theta), phi_dot=rate * (1 + 1e-6))
+        assert beside.kind == "wave"

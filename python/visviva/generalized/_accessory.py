@@ -45,7 +45,8 @@ class AccessoryProblem(Record):
         The smallest λ with −d/dt(P η̇ + Cᵀη) + C η̇ + R η = λ P η, where P, C and R are the second derivatives of L by
         velocities, by places and velocities, and by places: δ²S ≥ λ ∫ ηᵀP η dt. A time to the power −2.
     conjugate_points : ndarray, shape (K,)
-        Times after the first and before the last that are conjugate to the first, as often as they are multiple.
+        Times after the first and before the last that are conjugate to the first (of a run backward in time to the
+        earliest), as often as they are multiple.
 
     References
     ----------

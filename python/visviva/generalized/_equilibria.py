@@ -165,7 +165,7 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool)
     if system._constraints():
         return _of_constrained(system, starts, everywhere=everywhere)
     n, sizes = len(system.coordinates), Sizes(system)
-    reached = _reached(system, starts, sizes)
+    reached = _reached(system, starts, sizes, insist=not everywhere)
     distinguishing = np.ones(n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     if everywhere:
@@ -265,10 +265,22 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     return results
 
 
-def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes) -> NDArray[np.float64]:
-    """Where Newton's method ends (S, n): what its steps tell, and what is nearly told where forces are round-off."""
+def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, insist: bool) -> NDArray[np.float64]:
+    """Where Newton's method ends (S, n): what its steps tell, and what is nearly told where forces are round-off.
+
+    To ``insist`` is to let forces shrink from step to step, from where it comes to nothing otherwise.
+    """
     n = len(system.coordinates)
-    found = [each for each in system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values) if each]
+
+    def ends(starts: NDArray[np.float64], *, descending: bool) -> list[tuple[list[float], bool] | None]:
+        return system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values, descending)
+
+    every = ends(starts, descending=False)
+    without = [index for index, each in enumerate(every) if not (each and each[1])] if insist else []
+    if without:
+        for index, each in zip(without, ends(starts[without], descending=True), strict=True):
+            every[index] = each if each and each[1] else every[index]
+    found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
     told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)

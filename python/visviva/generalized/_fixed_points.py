@@ -38,6 +38,9 @@ _SINGULAR = 1e-13
 _LONGEST = np.pi
 #: Where a step is what is left of the one before, to this part of what that one moved, rates are linear.
 _LINEAR = 0.1
+#: A step is halved so often at most, until rates are less by at least this part of what they would be by the whole.
+_HALVINGS = 40
+_GAIN = 1e-4
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
@@ -72,7 +75,11 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
     n = len(system.coordinates)
     looked_at = np.abs(states).max(axis=0)
     scales = _scales(system, states)
-    states = _reached(system, states, scales)
+    starts = states
+    states, begun = _reached(system, starts, scales)
+    without = np.setdiff1d(np.arange(len(starts)), begun)
+    if not everywhere and len(without):
+        states = np.concatenate([states, _reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.ones(2 * n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     if everywhere:
@@ -111,23 +118,32 @@ def _scales(system: Hamiltonian, states: NDArray[np.float64]) -> _Scales:
     return _Scales(units, sizes, np.finfo(float).eps * (slopes @ sizes))
 
 
-def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) -> NDArray[np.float64]:
-    """Where Newton's method ends from each state, if it comes to an equilibrium."""
+def _reached(
+    system: Hamiltonian, states: NDArray[np.float64], scales: _Scales, *, descending: bool = False
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Where Newton's method ends from each state (S, 2n), if it comes to an equilibrium, and from which.
+
+    ``descending``, steps are halved until the rates are less.
+    """
     n = states.shape[1] // 2
     # Of coordinates and of what momenta make of them.
     alike = np.concatenate([np.ones(n), scales.units[n:] / scales.units[:n]])
     longest = np.fmax(_LONGEST, np.abs(states[:, :n]).max(axis=1, initial=0.0, keepdims=True))
     step, left, moved = np.full(states.shape, np.inf), np.full(states.shape, np.inf), np.zeros(states.shape)
-    at_kinks = [states[:0]]
+    begun = np.arange(len(states))
+    at_kinks, from_there = [states[:0]], [begun[:0]]
     for _ in range(_STEPS):
         rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
-        at_kinks.append(states[(rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))])
+        kinks = (rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))
+        at_kinks.append(states[kinks])
+        from_there.append(begun[kinks])
         finite = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
         states, longest, left, moved = (each[finite] for each in (states, longest, left, moved))
+        begun = begun[finite]
         rates, slopes = rates[finite], slopes[finite]
         if not len(states):
-            return np.concatenate(at_kinks)
+            return np.concatenate(at_kinks), np.concatenate(from_there)
         slopes = slopes * scales.units
         # Rates that change little, as beside a zero of higher order, count as others do.
         most = np.abs(slopes).max(axis=2, keepdims=True)
@@ -139,6 +155,8 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) 
         linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
         longest = np.where(linear & (length > longest), 2.0 * longest, longest)
         share = longest / np.maximum(length, longest)
+        if descending:
+            share = _descent(system, (states, rates, step), share)
         moved = step * share
         states, left = states + moved, step - moved
         if (np.abs(step) <= 1e-15 * (scales.sizes + np.abs(states))).all():
@@ -147,7 +165,27 @@ def _reached(system: Hamiltonian, states: NDArray[np.float64], scales: _Scales) 
     made_of = np.einsum("sij,sj->si", np.abs(slopes), np.abs(states) + np.abs(step))
     settled = (np.abs(step) <= SAME * (scales.sizes + np.abs(states))).all(axis=1)
     kept: NDArray[np.bool_] = settled & (np.abs(rates) <= _BALANCED * made_of + scales.least).all(axis=1)
-    return np.concatenate([states[kept], *at_kinks])
+    return np.concatenate([states[kept], *at_kinks]), np.concatenate([begun[kept], *from_there])
+
+
+def _descent(
+    system: Hamiltonian,
+    at: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    share: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Parts of steps (S, 1), halved until each rate is less than the largest at the state, as parts of that."""
+    states, rates, step = at
+    # Each by what it is at most in the step: rates of places and of momenta have units of their own.
+    sizes = np.abs(rates)
+    sizes = np.where(sizes > 0.0, sizes, sizes.max(axis=1, keepdims=True))
+    sizes[sizes == 0.0] = 1.0
+    for _ in range(_HALVINGS):
+        ahead = np.abs(rates_and_slopes(system, states + step * share)[0] / sizes).max(axis=1, keepdims=True)
+        longer = ~(ahead <= 1.0 - _GAIN * share)
+        if not longer.any():
+            break
+        share = np.where(longer, 0.5 * share, share)
+    return share
 
 
 def rates_and_slopes(

@@ -26,9 +26,9 @@ __all__ = ["Path", "as_path"]
 
 #: Polynomials of higher degree through many places swing between them.
 _HIGHEST_DEGREE = 9
-#: What polynomials of degree five between rows of a run may be off, as a part of how far it is from the origin there, for
-#: which this part of the farthest counts at least. The time between two rows is cut for it in so many parts at most, and
-#: these in as many again in each further round, up to so many rows.
+#: What polynomials of degree five between rows of a run may be off, as a part of how far it is from the origin there,
+#: for which this part of the farthest counts at least. For it the time between two rows is cut in so many parts at
+#: most, and these in as many again in each further round, up to so many rows.
 _FOLLOWED = 1e-13
 _NEAREST = 1e-3
 _MOST_PARTS = 16

@@ -26,6 +26,9 @@ const UNBALANCED: f64 = 1e-10;
 const SINGULAR: f64 = 1e-10;
 /// Rotations of a matrix on the way to its eigenvalues: some tens for each are usual.
 const ROTATIONS: usize = 100_000;
+/// A step is halved so often at most, until the force is less by at least this part of what it would be by the whole step.
+const HALVINGS: i32 = 40;
+const GAIN: f64 = 1e-4;
 
 /// Codes of forces at rest and of the matrices of small motions.
 #[derive(Clone, Debug)]
@@ -122,9 +125,16 @@ impl Linear {
 
     /// The equilibrium that Newton's method reaches from a place, and whether it is told by its steps: where forces are but
     /// round-off around a zero of higher order, steps are too, and of the places on the way that of the least force is given.
-    pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<(Vec<f64>, bool)> {
+    /// `Descending`, each step is halved until the force is less: slower, and no step leads over a singularity.
+    pub fn equilibrium(
+        &self,
+        t: f64,
+        start: &[f64],
+        parameters: &[f64],
+        steps: Steps,
+    ) -> Option<(Vec<f64>, bool)> {
         let mut calmest = (f64::INFINITY, vec![]);
-        let found = self.by_newton(t, start, parameters, &mut calmest);
+        let found = self.by_newton((t, parameters), start, steps, &mut calmest);
         let nearly = || (!calmest.1.is_empty()).then_some((calmest.1, false));
         found.map(|place| (place, true)).or_else(nearly)
     }
@@ -132,9 +142,9 @@ impl Linear {
     /// By Newton's steps; the place of the least force on the way is kept.
     fn by_newton(
         &self,
-        t: f64,
+        (t, parameters): (f64, &[f64]),
         start: &[f64],
-        parameters: &[f64],
+        steps: Steps,
         calmest: &mut (f64, Vec<f64>),
     ) -> Option<Vec<f64>> {
         let n = self.n;
@@ -157,7 +167,11 @@ impl Linear {
             // To a zero of higher order all corrections shrink by one factor: what is left is a geometric series.
             let shrinks = most / last;
             let steady = (shrinks - shrunk).abs() <= STEADY * shrinks && shrinks < 1.0 - STEADY;
-            let whole = if steady { 1.0 / (1.0 - shrinks) } else { 1.0 };
+            let whole = match steps {
+                Steps::Descending => self.descent((t, parameters), &q, &correction, (&units, force))?,
+                Steps::Whole if steady => 1.0 / (1.0 - shrinks),
+                Steps::Whole => 1.0,
+            };
             shrunk = if steady { f64::NAN } else { shrinks };
             let (mut moved, mut close) = (false, true);
             for i in 0..n {
@@ -180,6 +194,31 @@ impl Linear {
         }
         None
     }
+
+    /// What part of a step makes the force less.
+    fn descent(
+        &self,
+        (t, parameters): (f64, &[f64]),
+        q: &[f64],
+        correction: &[f64],
+        (units, force): (&[f64], f64),
+    ) -> Option<f64> {
+        (0..HALVINGS).map(|halved| 0.5_f64.powi(halved)).find(|part| {
+            let next: Vec<f64> = q.iter().zip(correction).map(|(q, step)| q + part * step).collect();
+            let at = self.matrices(t, &next, parameters);
+            // Too small a gain is none, but for round-off.
+            at.forces.iter().zip(units).all(|(x, unit)| (x * unit).abs() <= (1.0 - GAIN * part) * force)
+        })
+    }
+}
+
+/// How far Newton's steps are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// As they are.
+    Whole,
+    /// Halved until the force is less.
+    Descending,
 }
 
 /// Newton's step to an equilibrium.

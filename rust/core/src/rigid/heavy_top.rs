@@ -24,6 +24,8 @@ pub use motion::{Angles, Motion};
 
 /// Halvings until nothing is left of a bracket in double-double.
 const HALVINGS: usize = 220;
+/// What is no more than so many roundings of its terms is nothing.
+const ROUNDINGS: f64 = 4.0;
 
 /// The top: moments about the fixed point, across (A) and along (C) its axis, and mass · g · distance.
 #[derive(Clone, Copy, Debug)]
@@ -153,14 +155,20 @@ impl HeavyTop {
         let spin = (of(start.psi_dot) + phi * u) * of(self.along) / of(self.across);
         let swing = theta * theta + phi * phi * sine;
         // F(x) of x = u − u₀.
+        let slope = [phi * sine * spin, -(u * swing), -(gravity * sine)];
         let coefficients = [
             sine * theta * theta,
-            ((phi * sine * spin) - u * swing - gravity * sine).scale(2.0),
+            (slope[0] + slope[1] + slope[2]).scale(2.0),
             (gravity * u).scale(4.0) - swing - spin * spin,
             gravity.scale(2.0),
         ];
+        let terms: f64 = slope.iter().map(|term| 2.0 * term.to_f64().abs()).sum();
+        // It neither moves from there nor is pushed, but for the rounding of the rates given, and comes back.
+        let rests = theta.high() == 0.0
+            && coefficients[1].to_f64().abs() <= ROUNDINGS * f64::EPSILON * terms
+            && coefficients[2].to_f64() < 0.0;
         let roots = roots(coefficients, -above, below);
-        Ok(Cubic { above, below, u, sine, spin, coefficients, roots })
+        Ok(Cubic { above, below, u, sine, spin, coefficients, roots, rests })
     }
 
     /// The nutation from a start.
@@ -169,7 +177,7 @@ impl HeavyTop {
     /// `InvalidInput` for an angle outside [0, π].
     pub fn nutation(&self, start: Start) -> Result<Nutation> {
         let cubic = self.cubic(&start, of(self.torque) / of(self.across))?;
-        let Cubic { above, below, u, sine, spin, roots: [x1, x2, x3], .. } = cubic;
+        let Cubic { above, below, u, sine, spin, roots: [x1, x2, x3], rests, .. } = cubic;
         let phi = of(start.phi_dot);
         let angle = |x: DoubleDouble| {
             let [up, down] = [below - x, above + x].map(|part| part.to_f64().max(0.0).sqrt());
@@ -180,7 +188,7 @@ impl HeavyTop {
         let period = complete_first_kind(complement).scale(4.0) / rate;
         // Where p_φ = p_ψ u.
         let turning = phi * sine / spin;
-        let kind = if x1 == x2 {
+        let kind = if x1 == x2 || rests {
             "steady"
         } else if spin.high() == 0.0 {
             if phi.high() == 0.0 || sine.high() == 0.0 { "plane" } else { "wave" }
@@ -212,6 +220,8 @@ struct Cubic {
     spin: DoubleDouble,
     coefficients: [DoubleDouble; 4],
     roots: [DoubleDouble; 3],
+    /// Whether the angle stays what it is.
+    rests: bool,
 }
 
 impl Cubic {

@@ -242,15 +242,16 @@ impl GeneralizedModel {
     }
 
     /// The equilibria that Newton's method reaches from starts (S, n), each with whether its steps tell it, `None` where it
-    /// reaches none.
+    /// reaches none; with steps that make the forces less, if asked for.
     fn equilibria(
         &self,
         py: Python<'_>,
         t: f64,
         starts: Array<'_>,
         parameters: Array<'_>,
+        descending: bool,
     ) -> PyResult<Vec<small_motions::Reached>> {
-        small_motions::equilibria(py, (&self.model, &self.small), t, &starts, &parameters)
+        small_motions::equilibria(py, (&self.model, &self.small), (t, descending), &starts, &parameters)
     }
 
     /// F (S, n), and M, C and K (S, n, n) of small motions, at states (S, 2n).

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use std::sync::OnceLock;
 use visviva_core::Result;
 use visviva_core::generalized::Model;
-use visviva_core::generalized::linear::{Linear, Matrices, modes};
+use visviva_core::generalized::linear::{Linear, Matrices, Steps, modes};
 
 /// A place that Newton's method has reached, if it has, and whether its steps tell it.
 pub(super) type Reached = Option<(Vec<f64>, bool)>;
@@ -26,18 +26,19 @@ fn of<'a>(model: &Model, small: &'a OnceLock<Linear>) -> Result<&'a Linear> {
 pub(super) fn equilibria(
     py: Python<'_>,
     (model, small): (&Model, &OnceLock<Linear>),
-    t: f64,
+    (t, descending): (f64, bool),
     starts: &Array<'_>,
     parameters: &Array<'_>,
 ) -> PyResult<Vec<Reached>> {
     let n = model.source.coordinates;
     let (starts, _) = copied("position", starts, [None, Some(n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
+    let steps = if descending { Steps::Descending } else { Steps::Whole };
     compute(py, 0, None, |ticker| {
         let linear = of(model, small)?;
         let find = |start: &[f64]| {
             ticker.tick()?;
-            Ok(linear.equilibrium(t, start, &parameters))
+            Ok(linear.equilibrium(t, start, &parameters, steps))
         };
         starts.chunks(n).map(find).collect::<Result<Vec<_>>>()
     })?

@@ -242,8 +242,8 @@ fn at_middle(scale: f64, points: &[f64], found: &[Deflection]) -> Piece {
 /// The largest error of sin²(ψ/2), and where it is: at random points and beside the ends of all pieces that are large enough to matter.
 fn certified(table: &EventTable, source: &mut Source<'_, '_>) -> Result<(f64, f64)> {
     let random = |i: u64| (draw(key(0x7461_626c), i).number() as f64 / (1_u64 << 53) as f64).sqrt();
-    // What was halved to the last is shorter than twice the part of the disc that dyadic parts end at.
-    let smallest = 0.5_f64.powi(DEEPEST as i32) * 1.99;
+    // What was halved to the last is shorter than that, whether or not the first intervals were dyadic.
+    let smallest = 0.5_f64.powi(DEEPEST as i32 - 1);
     let near = |pair: &[f64]| (pair[1] - pair[0] > smallest).then(|| pair[0] + 0.02 * (pair[1] - pair[0]));
     let parts: Vec<f64> =
         (0..CERTIFYING).map(random).chain(table.starts.windows(2).filter_map(near)).collect();
