@@ -79,3 +79,13 @@ def test_a_body_that_starts_in_a_center_far_away() -> None:
     scene = vv.Scene(vv.Particles([1.0], [center], [[0.0, 1.0, 0.0]]), vv.Harmonic(k=1.0, center=center))
     out = scene.run(t=20.0, events=[vv.events.plane(center, (0.0, 1.0, 0.0))])
     assert out.velocity[-1, 0, 1] == pytest.approx(np.cos(20.0), abs=4 * np.spacing(1e8))
+
+
+@pytest.mark.parametrize("far", [1e2, 1e5, 1e8])
+def test_a_far_body_loosens_nothing_about_a_center_at_the_origin(far: float) -> None:
+    """Only a center that is far from the origin costs digits: not bodies that are far from one that is not."""
+    bodies = vv.Particles([1e-20, 1e-20], [[1.0, 0, 0], [far, 0, 0]], [[0, 1.0, 0], [0, far**-0.5, 0]])
+    scene = vv.Scene(bodies, [vv.CentralField(vv.potentials.PowerLaw(k=-1e-20, n=1)), vv.Gravity(1.0)])
+    out = scene.run(t=20.0, method="dop853", rtol=1e-13)
+    # What dop853 comes to at that tolerance in three turns.
+    np.testing.assert_allclose(out.position[-1, 0], [np.cos(20.0), np.sin(20.0), 0.0], rtol=0, atol=3e-11)

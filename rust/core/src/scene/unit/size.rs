@@ -47,15 +47,17 @@ impl Prepared {
         Ok(())
     }
 
-    /// What rounding of places does to places and velocities, where a force tells one place from another: what is far from
-    /// the origin is known to so much in every evaluation, however short the step.
+    /// What rounding of places does to places and velocities, where forces are those of a point: how far bodies are from one
+    /// that is far from the origin is known to so much in every evaluation, however short the step.
     fn rounding_of_places(&self, plan: &Plan, length: f64, ticker: &mut Ticker<'_>) -> Result<(f64, f64)> {
         let forces = plan.forces_of(self.unit.copy);
-        let here = || forces.iter().filter(|force| !force.translation_invariant());
-        if here().next().is_none() {
+        let points = forces.iter().filter_map(|force| force.fixed_point());
+        let far = points.flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+        if far == 0.0 {
             return Ok((0.0, 0.0));
         }
-        let far = self.position.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+        let far = self.units.take(far, [1, 0, 0]);
+        let here = || forces.iter().filter(|force| force.fixed_point().is_some());
         let bodies = self.bodies();
         let rate = here().map(|force| force.rate(&bodies, self.units)).fold(0.0, f64::max);
         let rate = rate.max((self.strongest(here(), plan, ticker)? / length).sqrt());
