@@ -18,6 +18,9 @@ use crate::units::Units;
 use crate::words::{number, numbers};
 use std::sync::Arc;
 
+/// What a rod has of its spin about itself is rounding, below this part of it.
+const ABOUT_ITSELF: f64 = 1e-12;
+
 /// The rigid bodies of a batch of copies of a scene: the last bodies of each.
 #[derive(Clone, Debug, Default)]
 pub struct RigidBodies {
@@ -65,9 +68,17 @@ impl RigidBodies {
         Self { orientation, angular_velocity, ..self }
     }
 
-    /// The orientation of the principal axes of a body, and its angular velocity along them.
+    /// The orientation of the principal axes of a body, and its angular velocity along them: of a rod none about itself,
+    /// where the turn of its axes may leave some roundings.
     pub fn principal(&self, at: usize) -> (Quaternion, [f64; 3]) {
-        Self::to_principal(self.axes[at], self.orientation[at], self.angular_velocity[at])
+        let (orientation, mut spin) =
+            Self::to_principal(self.axes[at], self.orientation[at], self.angular_velocity[at]);
+        for c in 0..3 {
+            if self.moments[at][c] == 0.0 {
+                spin[c] = 0.0;
+            }
+        }
+        (orientation, spin)
     }
 
     /// An orientation and an angular velocity of the caller's axes, of principal ones.
@@ -106,9 +117,9 @@ impl RigidBodies {
                 let message = format!("expected finite numbers, got {}", numbers(&spin));
                 return Err(Error::invalid("angular_velocity", message));
             }
-            let (_, principal) = self.principal(at);
+            let (_, principal) = Self::to_principal(self.axes[at], self.orientation[at], spin);
             for c in 0..3 {
-                if self.moments[at][c] == 0.0 && principal[c].abs() > 1e-15 * length(spin) {
+                if self.moments[at][c] == 0.0 && principal[c].abs() > ABOUT_ITSELF * length(spin) {
                     let message = format!(
                         "expected no spin about the axis of a rod, whose moment is 0, got {} about it",
                         number(principal[c])
