@@ -14,7 +14,7 @@ from visviva import _core, _expression_table
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
-from visviva.generalized._nodes import Nodes
+from visviva.generalized._nodes import Nodes, not_compiled
 from visviva.generalized._source import calls
 from visviva.generalized._symbolic import Symbols, sympy, time
 
@@ -101,7 +101,7 @@ def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
     if callable(force):
         check_call("force", force, ("position", "velocity", "t"), names)
-        return tuple(_one_of(force, c) for c in range(3))
+        return tuple(_one_of(not_compiled(force), c) for c in range(3))
     if isinstance(force, str) or not hasattr(force, "__len__") or len(force) != 3:
         raise InvalidInput("force", f"expected three components, or a function that gives them, got {force!r}")
     return tuple(force)

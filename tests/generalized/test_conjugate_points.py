@@ -7,10 +7,13 @@ more as the mixing of modes loses.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import visviva as vv
+from visviva.generalized import _path
 
 
 def half_turns(frequencies: list[float], time: float) -> np.ndarray:
@@ -155,3 +158,18 @@ def test_a_run_whose_rows_are_far_apart(rows: int) -> None:
     # 7.23093628: Jacobi's equation by DOP853, beside the motion. What is off by 1e-13 of the orbit's size in a path is
     # 1e-12 at its pericenter, and some hundred times that in what comes back from there.
     assert found.conjugate_points == pytest.approx([2 * np.pi, 7.23093628, 4 * np.pi], abs=1e-8)
+
+
+def test_rows_that_the_equations_of_motion_do_not_lead_to_are_joined_as_they_are(monkeypatch: Any) -> None:
+    """Of coarse steps: more places between them, each of two runs, took a minute and told nothing."""
+    counted = []
+    through = _path._through
+    monkeypatch.setattr(_path, "_through", lambda *given: counted.append(len(given[1])) or through(*given))
+    pendulum = vv.systems.pendulum(position=[1.0])
+    run = pendulum.run(np.linspace(0.0, 20.0, 101), method="rk4", dt=0.2)
+    exact = pendulum.run(np.linspace(0.0, 20.0, 101), rtol=1e-13)
+    coarse = pendulum.accessory_problem(run)
+    assert counted == [101]
+    # The path is off by the phase of rk4: (ωh)⁴/120 of the time, with ω = √9.81.
+    assert coarse.conjugate_points == pytest.approx(pendulum.accessory_problem(exact).conjugate_points, rel=3e-3, abs=0)
+    assert max(counted) > 101

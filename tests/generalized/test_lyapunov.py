@@ -104,3 +104,10 @@ def test_a_drive_that_may_be_faster_than_a_step() -> None:
     )
     c, s = np.cos(2.5), np.sin(2.5)
     assert driven.flow_jacobian(2.5) == pytest.approx(np.array([[c, s], [-s, c]]), rel=0, abs=1e-12)
+
+
+@pytest.mark.parametrize("angle", [np.pi / 2, np.pi / 2 - 1e-3, 1.5])
+def test_units_are_those_of_the_motion_and_not_of_its_start(angle: float) -> None:
+    """At a right angle the force of a pendulum has no slope: in units of that instant neighbors part by e⁸ at once."""
+    swing = vv.systems.pendulum(position=[angle])
+    assert np.abs(swing.lyapunov_exponents(300.0)).max() < 2 * np.log(300.0) / 300.0

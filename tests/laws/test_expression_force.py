@@ -311,3 +311,26 @@ def test_the_virial_beside_a_force_that_looks_at_velocities() -> None:
     still = vv.ExpressionForce(force=lambda r, v, t: (-r[0], -r[1], 0.0 * r[0]))
     out = vv.Scene(scene.particles, still).run(t=[0.0, 1.0])
     np.testing.assert_allclose(out.virial, -(out.position[:, 0] ** 2).sum(axis=-1), rtol=1e-14, atol=0)
+
+
+class Compiled:
+    """As Numba's: it takes numbers only, and has the function that it was made of."""
+
+    def __init__(self, function: Any) -> None:
+        self.py_func = function
+
+    def __call__(self, *given: Any) -> Any:
+        if not all(isinstance(each, float) for each in given):
+            raise TypeError("cannot determine the type of an expression")
+        return self.py_func(*given)
+
+
+def test_functions_that_are_compiled_for_numbers() -> None:
+    """They ended in an error of the compiler: the Python function has the expressions."""
+    body = vv.Particles([2.0], [[1.0, 2.0, 0.0]], [[3.0, 1.0, 0.0]])
+    written = vv.ExpressionForce(force=lambda r, v, t: (-r[0], -2 * r[1], -r[2]))
+    compiled = vv.ExpressionForce(force=Compiled(lambda r, v, t: (-r[0], -2 * r[1], -r[2])))
+    one, other = (vv.Scene(body, force).run(t=1.0).position for force in (written, compiled))
+    np.testing.assert_array_equal(one, other)
+    swing = vv.Lagrangian(Compiled(lambda q, v, t: v[0] ** 2 / 2 + np.cos(q[0])), ["x"], position=[0.1])
+    assert swing.period() == pytest.approx(2 * np.pi, rel=1e-3, abs=0)

@@ -272,13 +272,13 @@ class Flow:
 
         Notes
         -----
-        Lengths of small differences are √Σδ² of the numbers of the state, places and velocities (momenta of a
-        Hamiltonian), in units in which their rates at the start depend on each other alike (powers of two of those
-        given, 1 where they tell none). Another norm, or momenta for velocities, change an exponent over a time T by
-        at most the logarithm of the ratios of the norms at both ends over T: not
-        what it tends to while the motion keeps to where those are bounded. Exponents of a Hamiltonian without further
-        forces add up to 0; those of a Lagrangian to ln(det M(start) / det M(end)) / T of the mass matrix M, which
-        tends to it.
+        Lengths of small differences are √Σδ² of the numbers of the state as they are: places and velocities (momenta of
+        a Hamiltonian), in their units, whatever the mass matrix; where these are so unlike that rates depend on each
+        other by factors beyond 2¹⁰, in multiples of them by powers of 2²⁰. Another norm, other units, or momenta for
+        velocities change an exponent over a time T by at most the logarithm of the ratios of the norms at both ends
+        over T: not what it tends to while the motion keeps to where those are bounded. Exponents of a Hamiltonian
+        without further forces add up to 0; those of a Lagrangian to ln(det M(start) / det M(end)) / T of the mass
+        matrix M, which tends to it.
 
         References
         ----------

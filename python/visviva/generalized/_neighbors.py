@@ -33,6 +33,15 @@ MOST_STEPS = 100_000_000
 _DROWNED = 1e-5
 #: Singular values above this part of the largest are none of constraints that depend on each other.
 _INDEPENDENT = 1e-12
+#: Instants, from this part of a time on, at which slopes are looked at for units; within how many parts of the run at
+#: most, and how many steps; and how well the motion is known there.
+_INSTANTS = 64
+_FIRST = 1e-4
+_PARTS_OF_UNITS = 64
+_STEPS_OF_UNITS = 10_000
+_LOOSE = 1e-6
+#: Units are powers of two to this: numbers of about one size stay what they are.
+_COARSE = 20.0
 #: Steps after which neighbors are put on constraints again.
 _STEPS_OF_A_PART = 16
 
@@ -147,8 +156,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     model, neighbors = system._model.variational(), _Neighbors(system)
     parts = max(1, round(abs(t - system.t0) / interval))
     state = system._start()
-    # Lengths of neighbors are of numbers in units in which their rates are alike: places and momenta are told apart.
-    units = balanced_units(rates_and_slopes(system, state[None])[1])[0][:, None]
+    units = _units(system, system.t0 + min(parts, _PARTS_OF_UNITS) * (t - system.t0) / parts)[:, None]
     frame = np.linalg.qr(neighbors.directions(system.t0, state) / units)[0] * units
     several = frame.shape[1]
     sums = np.zeros(several)
@@ -204,6 +212,23 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         done = None if reached == system.t0 else _exponents(sums, reached - system.t0)
         raise Interrupted(f"the exponents were interrupted at t = {reached:g}", result=done) from stopped
     return _exponents(sums, t - system.t0)
+
+
+def _units(system: GeneralizedSystem, t: float) -> NDArray[np.float64]:
+    """Give units of the numbers of a state in which their rates are not too unlike, on the way to a time.
+
+    Lengths of neighbors are measured in them. At one instant slopes tell little, as of a pendulum at a right angle.
+    """
+    start, times = system._start()[None, :], system.t0 + np.geomspace(_FIRST, 1.0, _INSTANTS) * (t - system.t0)
+    asked, _ = system._asked(t, "gauss16", _LOOSE, None, None, _STEPS_OF_UNITS)
+    asked["outputs"] = times
+    result = system._model.run(asked, start, system._values[None, :], 1, None)
+    if result["interrupted"]:
+        raise Interrupted(f"the exponents were interrupted at t = {system.t0:g}", result=None)
+    slopes = np.abs(rates_and_slopes(system, np.concatenate([start, result["y"]]))[1])
+    alike = balanced_units(np.where(np.isfinite(slopes), slopes, 0.0).max(axis=0)[None])[0]
+    units: NDArray[np.float64] = np.exp2(_COARSE * np.rint(np.log2(alike) / _COARSE))
+    return units
 
 
 def _exponents(sums: NDArray[np.float64], time: float) -> NDArray[np.float64]:

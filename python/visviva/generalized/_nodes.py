@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "recorded"]
+__all__ = ["Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "not_compiled", "recorded"]
 
 Node: TypeAlias = tuple[str, list[int], float]
 
@@ -326,6 +326,12 @@ class Expression:
         raise self._refused(f"function {name} is not known to the compiled core; known: {KNOWN}")
 
 
+def not_compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Give the Python function that one of Numba, which takes numbers only, was made of; any other as it is."""
+    written: Callable[..., Any] = getattr(function, "py_func", function)
+    return written
+
+
 def call_with_expressions(
     nodes: Nodes, argument: str, function: Callable[..., Any], numbers: tuple[Any, ...], values: dict[str, Any]
 ) -> Any:
@@ -334,6 +340,7 @@ def call_with_expressions(
     Errors of one's own stay what they are, with a note of where they come from.
     """
     nodes.argument = argument
+    function = not_compiled(function)
     try:
         return function(*numbers, **values)
     except InvalidInput:

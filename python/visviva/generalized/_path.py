@@ -124,13 +124,16 @@ def _followed(system: GeneralizedSystem, t: NDArray[np.float64], states: NDArray
         times, more, parts = [t], [states], np.ones(len(t) - 1, dtype=int)
         for piece, told in zip(looked_at.tolist(), middles, strict=True):
             begin, width = t[piece], t[piece + 1] - t[piece]
-            middle = _led_on(system, states[piece], begin, begin + np.array([0.5]) * width)
-            if middle is None:
+            ahead = _led_on(system, states[piece], begin, np.array([begin + 0.5 * width, t[piece + 1]]))
+            if ahead is None:
                 continue
-            away = max(_NEAREST, float((np.abs(told) / size).max()))
-            off = float((np.abs(middle[0, :n] - told) / size).max()) / away
+            off = float((np.abs(ahead[0, :n] - told) / size).max())
+            apart = np.abs(ahead[1] - states[piece + 1])
+            missed = float(((apart[:n] + width * apart[n:]) / size).max())
+            # Between rows that the equations of motion do not lead to from each other no path is better than they are.
+            least = max(missed, _FOLLOWED * max(_NEAREST, float((np.abs(told) / size).max())))
             # The error of polynomials of degree five between rows.
-            wanted = min(_MOST_PARTS, int(np.ceil((off / _FOLLOWED) ** (1.0 / 6.0))))
+            wanted = min(_MOST_PARTS, int(np.ceil((off / least) ** (1.0 / 6.0))))
             between = begin + np.arange(1, wanted) / max(1, wanted) * width
             if wanted > 1 and (found := _led_on(system, states[piece], begin, between)) is not None:
                 parts[piece] = wanted

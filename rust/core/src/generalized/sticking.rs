@@ -25,7 +25,7 @@ const BESIDE: f64 = 1e-9;
 /// What ends a run there.
 const STUCK: &str = "a velocity sticks at zero, where an absolute value of it turns: on both sides its forces, as dry friction, point \
     back to zero. It stays there while the other forces are weaker, which these equations do not tell; end the run before (an event \
-    of the velocity), or write v·tanh(v/width) for |v|";
+    of the velocity), or write v·tanh(v/width) for |v| and tanh(v/width) for v/|v|";
 
 /// Codes of what absolute values are taken of, with their rates, where these are of velocities.
 ///

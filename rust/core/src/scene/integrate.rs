@@ -45,6 +45,8 @@ pub struct Job<'a> {
     pub times: &'a [f64],
     /// Relative tolerance.
     pub rtol: f64,
+    /// The one asked for, of which it is a part where events must not cost the digits of what is known.
+    pub asked_rtol: f64,
     /// Absolute tolerances in the scene's units.
     pub atol: Option<&'a AbsoluteTolerances>,
     /// Longest step.

@@ -276,6 +276,7 @@ fn run_part(
         plan,
         times: &request.times,
         rtol: plan.rtol(request),
+        asked_rtol: request.rtol,
         atol: request.atol.as_ref(),
         max_step: plan.max_step(request),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),

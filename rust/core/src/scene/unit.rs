@@ -90,7 +90,7 @@ pub struct Prepared {
     pub reference: Origin,
     /// The size of a distance and of a velocity at the start.
     pub size: (f64, f64),
-    /// What a place and a velocity are not told from, whatever the tolerance.
+    /// What rounding does to a place and a velocity, however short a step.
     pub rounding: (f64, f64),
     /// How its coordinates lie.
     pub shape: Shape,

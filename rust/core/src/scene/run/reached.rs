@@ -188,6 +188,7 @@ fn again(
         plan: part.plan,
         times: &times,
         rtol: part.plan.rtol(request),
+        asked_rtol: request.rtol,
         atol: request.atol.as_ref(),
         max_step: part.plan.max_step(request),
         max_steps: u64::MAX,

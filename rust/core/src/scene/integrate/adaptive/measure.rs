@@ -52,9 +52,10 @@ fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) 
     } else {
         (unit.size.0, unit.rounding.0, -units.length)
     };
-    let least = rounding.max(NOTHING * job.rtol * size);
     let given = job.atol.and_then(|atol| atol.kinds()[usize::from(block.velocity)]);
-    let at_least = |&atol: &f64| scale(atol, exponent).max(least);
+    let at_least = |&atol: &f64| scale(atol, exponent).max(NOTHING * job.rtol * size);
+    // A tolerance that nobody asked for is no finer than rounding.
+    let own = (job.rtol * size).max(rounding.min(job.asked_rtol * size));
     match given {
         Some(each) if each.len() > 1 => {
             // Lanes without a body are held to what the first is.
@@ -70,7 +71,7 @@ fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) 
             }
         }
         one => {
-            let atol = one.and_then(<[f64]>::first).map_or((job.rtol * size).max(rounding), at_least);
+            let atol = one.and_then(<[f64]>::first).map_or(own, at_least);
             block.atol[0] = Lanes::select(lanes, Lanes::splat(atol), block.atol[0]);
         }
     }
