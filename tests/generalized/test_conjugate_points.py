@@ -173,3 +173,13 @@ def test_rows_that_the_equations_of_motion_do_not_lead_to_are_joined_as_they_are
     # The path is off by the phase of rk4: (ωh)⁴/120 of the time, with ω = √9.81.
     assert coarse.conjugate_points == pytest.approx(pendulum.accessory_problem(exact).conjugate_points, rel=3e-3, abs=0)
     assert max(counted) > 101
+
+
+@pytest.mark.parametrize("count", [2, 3, 41])
+def test_rates_that_vanish_at_the_middle_of_a_path(count: int) -> None:
+    """Steps were as long as the middles of pieces allow: no conjugate point was found where there are 17."""
+    hill = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - 10 * q[0] ** 4, ["x"])
+    found = hill.accessory_problem((np.linspace(0.0, 1.0, count), np.linspace(-10.0, 10.0, count)))
+    assert found.index == 17
+    # With 401 places on the same line.
+    assert found.eigenvalue == pytest.approx(-9021.98293588297, rel=1e-12, abs=0)

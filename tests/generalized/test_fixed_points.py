@@ -5,7 +5,7 @@ Bounds: simple zeros are met to some ten roundings of numbers of size 1 or π, 1
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -201,3 +201,32 @@ def test_stability_is_judged_at_the_place(start: float) -> None:
         found = [e for e in system.equilibria(near=[[0.9, 0.0], [start, 0.0]]) if abs(e.position[0] - place) < 1e-9]
         assert [e.stable for e in found] == [True]
         np.testing.assert_allclose(found[0].frequencies, [1.0], rtol=1e-9, atol=0)
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [
+        lambda x, y: x**2 * y,
+        lambda x, y: -(x**2) * y**2,
+        lambda x, y: x**4 + y**4 - 6 * x**2 * y**2,
+        lambda x, y: y**2 / 2 + x**2 * y,
+    ],
+)
+def test_what_is_level_to_second_order_and_falls_aslant_is_unstable(potential: Callable[[Any, Any], Any]) -> None:
+    """Only where all is in balance far along a level direction is a motion along it a drift."""
+    system = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + p[1] ** 2) / 2 + potential(q[0], q[1]), ["x", "y"])
+    for form, near in ((system, [[0.1, 0.07, 0.0, 0.0]]), (system.lagrangian(), [[0.1, 0.07]])):
+        assert [e.stable for e in form.equilibria(near=near)] == [False]
+
+
+def test_where_a_potential_underflows_are_no_equilibria() -> None:
+    """Starts of the search were told as they are, a dozen of them as stable."""
+    steep = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + np.exp(-300 * q[0] ** 2), ["x"])
+    for form in (steep, steep.hamiltonian()):
+        assert [e.position[0] for e in form.equilibria() if e.stable] == [0.0]
+    bond = vv.Lagrangian(
+        lambda q, v, t: 1.6e-27 * v[0] ** 2 / 2 - 7.4e-19 * (1 - np.exp(-1.81e10 * (q[0] - 1.275e-10))) ** 2,
+        ["r"],
+        position=[1.3e-10],
+    )
+    np.testing.assert_allclose([e.position[0] for e in bond.equilibria()], [1.275e-10], rtol=1e-12, atol=0)

@@ -276,10 +276,19 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
         return system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values, descending)
 
     every = ends(starts, descending=False)
-    without = [index for index, each in enumerate(every) if not (each and each[1])] if insist else []
-    if without:
+    without = [index for index, each in enumerate(every) if not (each and each[1])]
+    if insist and without:
         for index, each in zip(without, ends(starts[without], descending=True), strict=True):
             every[index] = each if each and each[1] else every[index]
+    elif not insist:
+        # Where a start is left as it is nothing acts, as where a potential underflows: it has been found by no step.
+        moved = np.ones(n, dtype=bool)
+        moved[system._structure["cyclic"]] = False
+        grid = starts if system.position is None else starts[:-1]
+        for index, start in enumerate(grid):
+            each = every[index]
+            if each and moved.any() and (np.asarray(each[0]) == start)[moved].all():
+                every[index] = None
     found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)

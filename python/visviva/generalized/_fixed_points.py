@@ -18,7 +18,7 @@ from visviva.generalized._equilibria import SAME, Equilibrium, by_sizes, starts_
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
 from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
-from visviva.generalized._multiple_zeros import left_open, told_apart
+from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
 from visviva.generalized._probe import terms_of
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ _LINEAR = 0.1
 #: A step is halved so often at most, until rates are less by at least this part of what they would be by the whole.
 _HALVINGS = 40
 _GAIN = 1e-4
+#: Directions between those in which H is level, and how far along them it is looked at, in sizes of a state.
+_DIRECTIONS = 8
+_FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
@@ -83,6 +86,9 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
     distinguishing = np.ones(2 * n, dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     if everywhere:
+        # Where a start is left as it is nothing acts, as where a potential underflows: it has been found by no step.
+        still = (states == starts[begun])[:, :n] | ~distinguishing[:n]
+        states = states[~still.all(axis=1) | ~distinguishing[:n].any()]
         # All places along a cyclic coordinate are alike, and those beyond a turn are the same or far away.
         states[:, ~distinguishing] = 0.0
         states = states[np.abs(states[:, :n]).max(axis=1, initial=0.0) <= np.pi + 1e-6]
@@ -173,18 +179,22 @@ def _descent(
     at: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     share: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Parts of steps (S, 1), halved until each rate is less than the largest at the state, as parts of that."""
+    """Parts of steps (S, 1), halved until each rate is less than at the state; not a number if none is."""
     states, rates, step = at
-    # Each by what it is at most in the step: rates of places and of momenta have units of their own.
+    # Those of places and of momenta have units of their own.
     sizes = np.abs(rates)
     sizes = np.where(sizes > 0.0, sizes, sizes.max(axis=1, keepdims=True))
     sizes[sizes == 0.0] = 1.0
+    share, longer = share.copy(), np.arange(len(states))
     for _ in range(_HALVINGS):
-        ahead = np.abs(rates_and_slopes(system, states + step * share)[0] / sizes).max(axis=1, keepdims=True)
-        longer = ~(ahead <= 1.0 - _GAIN * share)
-        if not longer.any():
+        rates = rates_and_slopes(system, states[longer] + step[longer] * share[longer])[0]
+        ahead = np.abs(rates / sizes[longer]).max(axis=1)
+        longer = longer[~(ahead <= 1.0 - _GAIN * share[longer, 0])]
+        share[longer] *= 0.5
+        if not len(longer):
             break
-        share = np.where(longer, 0.5 * share, share)
+    # No part of a step leads down: the state is given up.
+    share[longer] = np.nan
     return share
 
 
@@ -233,7 +243,7 @@ def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64]
     frequencies = np.sort(np.abs(values.imag[values.imag > least]))
     stable = bool((values.real <= _ON_THE_AXIS * largest).all())
     if stable and not (values.real < -_ON_THE_AXIS * largest).all():
-        by_energy = _by_energy(energy, state, about, off) if about is not None and level else None
+        by_energy = _by_energy(energy, state, about, off, size) if about is not None and level else None
         # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
         own = bool(largest > 0.0) and bool(np.linalg.svd(vectors, compute_uv=False)[-1] > _ON_THE_AXIS)
         stable = own if by_energy is None else by_energy
@@ -297,7 +307,13 @@ def _energy(system: Hamiltonian) -> Energy:
     return Energy(slopes, sizes)
 
 
-def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64]) -> bool | None:
+def _by_energy(
+    energy: Energy,
+    state: NDArray[np.float64],
+    about: Curvatures,
+    off: NDArray[np.float64],
+    size: NDArray[np.float64],
+) -> bool | None:
     """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known.
 
     Where it stays level are equilibria, too: that a motion drifts along them does not count, as along a coordinate that
@@ -306,4 +322,17 @@ def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, of
     known = set(np.sign(about.values[about.values != 0.0]))
     if len(known) > 1:
         return None
-    return not {-1.0, 1.0} <= known | set(rises(energy, state, about, off))
+    beside = set(rises(energy, state, about, off))
+    if {-1.0, 1.0} <= known | beside:
+        return False
+    return True if 0.0 not in beside or _stays_level(energy, state, about, size) else None
+
+
+def _stays_level(energy: Energy, state: NDArray[np.float64], about: Curvatures, size: NDArray[np.float64]) -> bool:
+    """Whether all is in balance far along every direction in which H is level to second order."""
+    level = (about.vectors * about.sizes[:, None])[:, about.values == 0.0]
+    mixed = np.random.default_rng(0).normal(size=(level.shape[1], _DIRECTIONS))
+    ways = level @ np.concatenate([np.eye(level.shape[1]), mixed], axis=1)
+    ways = ways * (1.0 / np.abs(ways / size[:, None]).max(axis=0))
+    places = np.concatenate([state + part * ways.T for part in _FAR_ALONG])
+    return bool(round_off(energy, places, size).all())

@@ -105,18 +105,18 @@ class Linear:
 
     def _parts(self, shift: float) -> int:
         """Give how many steps a piece is cut in."""
-        count = len(self.lengths)
-        second = self.second(np.arange(count), np.full((count, 1), 0.5))
-        rates = np.abs(np.linalg.eigvals(self.matrices(second, shift))).max(axis=(1, 2))
-        parts = max(1.0, np.ceil((rates * self.lengths).max() / _RATE), np.ceil(self._fewest / count))
-        # A power of two, so that steps for other shifts are often the same.
-        while parts * count <= _MOST_STEPS:
-            whole = 1 << (int(parts) - 1).bit_length()
+        parts = max(1, -(-self._fewest // len(self.lengths)))
+        while parts * len(self.lengths) <= _MOST_STEPS:
+            # A power of two, so that steps for other shifts are often the same.
+            whole = 1 << (parts - 1).bit_length()
             if whole not in self._known:
                 self._known[whole] = self._coefficients(whole)
-            if self._known[whole].resolved:
+            known = self._known[whole]
+            # The shift is one of squares of frequencies.
+            turned = float((known.lengths * np.sqrt(np.abs(known.squares + shift).max(axis=0))).max()) / _RATE
+            if known.resolved and turned <= 1.0:
                 return whole
-            parts = 2 * whole
+            parts = max(2 * whole, int(min(turned, 2.0 * _MOST_STEPS) * whole))
         raise ConvergenceError("the path is too long for its fastest motion: cut it")
 
     def _coefficients(self, parts: int) -> _Coefficients:
@@ -128,7 +128,9 @@ class Linear:
         sizes = np.sqrt(np.abs(np.diagonal(second, axis1=-2, axis2=-1)[..., self.n :]).max(axis=1))
         sizes = np.concatenate([sizes / lengths[:, None], sizes], axis=-1)
         resolved = bool((tails <= _RESOLVED * sizes[:, :, None] * sizes[:, None, :]).all())
-        return _Coefficients(pieces, first, second, lengths, resolved)
+        frequencies = -(np.linalg.eigvals(self.matrices(second, 0.0)) ** 2).real
+        squares: _Array = np.stack([frequencies.min(axis=(1, 2)), frequencies.max(axis=(1, 2))])
+        return _Coefficients(pieces, first, second, lengths, squares, resolved)
 
     def neighbors(self, shift: float) -> Neighbors:
         """Give the neighbors from the first point on, and how often they come back."""
@@ -175,6 +177,8 @@ class _Coefficients:
     first: _Array
     second: _Array
     lengths: _Array
+    #: Of the frequencies of the linear equation at the nodes, the least and the largest, shape (2, K).
+    squares: _Array
     #: Whether a polynomial through the nodes tells what is between them.
     resolved: bool
     #: Units of the steps, once they were asked for.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Sizes
 
-__all__ = ["at_rest", "left_open", "settled", "told_apart", "units"]
+__all__ = ["at_rest", "left_open", "round_off", "settled", "told_apart", "units"]
 
 _EPSILON = float(np.finfo(float).eps)
 #: Roundings of what forces are the sums of.
@@ -57,13 +57,13 @@ def settled(
     size = np.where(size > 0.0, size, 1.0)
     energy = at_rest(system, sizes)
     if len(nearly):
-        nearly = nearly[_round_off(energy, nearly, size).all(axis=1)]
+        nearly = nearly[round_off(energy, nearly, size).all(axis=1)]
     if told.shape[1] == 1:
         soft = _soft(system, told, size)
         places = np.concatenate([told[soft], nearly])
         if len(places):
             better = _by_derivatives(system, places, size, sizes)
-            places = np.where(_round_off(energy, better, size), better, places)
+            places = np.where(round_off(energy, better, size), better, places)
         return np.concatenate([told[~soft], places])
     found = told_apart(energy, [*told, *nearly], size, lambda place: units(system, place))
     return np.array(found).reshape(-1, told.shape[1])
@@ -97,7 +97,7 @@ def _soft(system: Lagrangian, places: NDArray[np.float64], size: NDArray[np.floa
     return soft
 
 
-def _round_off(energy: Energy, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
+def round_off(energy: Energy, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether slopes at places are nothing but round-off (S, n), that of places beside their sizes, too."""
     first, second = energy.slopes(places)
     made_of = np.einsum("sij,sj->si", np.abs(second), np.fmax(np.abs(places), size)) + energy.sizes(places)
@@ -123,7 +123,7 @@ def left_open(
     softest *= size[np.abs(softest).argmax()] / np.abs(softest).max()
     unseen = np.ones(len(_WITHIN), dtype=bool)
     for sign in (1.0, -1.0):
-        unseen &= _round_off(energy, place + sign * _WITHIN[:, None] * softest, size).all(axis=1)
+        unseen &= round_off(energy, place + sign * _WITHIN[:, None] * softest, size).all(axis=1)
     # As far as all distances below are unseen, too: places are not joined over a hill.
     reached = _WITHIN[np.logical_and.accumulate(unseen)]
     left: NDArray[np.float64] = reached.max(initial=0.0) * softest
@@ -150,7 +150,7 @@ def told_apart(
         if (apart <= left).all(axis=1).any():
             continue
         snapped = np.where(np.abs(place) <= left, 0.0, place)
-        found.append(snapped if _round_off(energy, snapped[None], size).all() else place)
+        found.append(snapped if round_off(energy, snapped[None], size).all() else place)
     return found
 
 
