@@ -88,7 +88,8 @@ def elements_of(
         chosen = body_indices("bodies", bodies, names, count)
         _check_chosen(chosen, parent, names)
     if isinstance(parent, int):
-        if gone[..., parent].any() and not (isinstance(start, EnsembleScene) and len(mass) > 1):
+        away = gone[..., parent]
+        if away.any(axis=1).all() if isinstance(start, EnsembleScene) else away.any():
             raise InvalidInput(
                 "about", f"expected a body by itself, but {body_label(parent, names)} has become a part of another"
             )
@@ -217,5 +218,5 @@ def _conics(mu: NDArray[np.float64], r: NDArray[np.float64], v: NDArray[np.float
         values = getattr(found, name)
         spread[name] = np.full((*mu.shape, *values.shape[1:]), np.nan)
         spread[name][known] = values
-    spread["mu"] = mu
+    spread["mu"] = np.where(known, mu, np.nan)
     return spread

@@ -251,10 +251,15 @@ def test_elements_of_copies_in_some_of_which_the_center_has_merged() -> None:
     scene = spheres([1.0, 2.0, 3.0], places, velocity, 0.3, vv.Gravity(0.05))
     out = scene.ensemble(velocity=[velocity, -velocity]).run([0.0, 1.0, 5.0], collisions="merge")
     assert set(out.collisions.member) == {0}
-    found = out.elements(about=0).semi_major_axis
-    np.testing.assert_array_equal(found[1], out[1].elements(about=0).semi_major_axis)
-    assert np.isfinite(found[0, :2]).all()
-    assert np.isnan(found[0, 2]).all()
+    found, alone = out.elements(about=0), out[1].elements(about=0)
+    for name in ("semi_major_axis", "mu", "eccentricity"):
+        values = getattr(found, name)
+        np.testing.assert_array_equal(values[1], getattr(alone, name))
+        assert np.isfinite(values[0, :2]).all()
+        assert np.isnan(values[0, 2]).all()
+    both = scene.ensemble(velocity=[velocity, velocity]).run([0.0, 1.0, 5.0], collisions="merge")
+    with pytest.raises(vv.InvalidInput, match="become a part of another"):
+        both.elements(about=0)
 
 
 @pytest.mark.parametrize("mass", [0.0, 1e-30])
