@@ -26,6 +26,8 @@ __all__ = ["warn_of_coarse_times"]
 
 _TRIED = 17
 """Times of the run at which forces are asked."""
+_BESIDE = (1, -1, 2, 3)
+"""Numbers beside them: phases at neighbors may round to the same number."""
 
 
 def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
@@ -36,11 +38,12 @@ def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
         if not isinstance(force, ExpressedForce) or not looks_at_time(force.nodes):
             continue
         try:
-            here, beside = (_told(scene, index, times + off) for off in (0.0, apart))
+            here, *beside = (_told(scene, index, times + off * apart) for off in (0, *_BESIDE))
         except InvalidInput:
             continue  # where it is not known the run itself has said so
         largest = np.abs(here).max()
-        change = float(np.abs(beside - here).max() / largest) if largest > 0.0 else 0.0
+        changes = [np.abs(there - here).max() / abs(off) for off, there in zip(_BESIDE, beside, strict=True)]
+        change = float(max(changes) / largest) if largest > 0.0 else 0.0
         if change > asked["rtol"]:
             message = (
                 f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next forces[{index}] "

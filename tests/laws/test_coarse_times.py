@@ -33,6 +33,14 @@ def test_a_drive_of_the_time_since_1970(t0: float, told: bool, copies: int) -> N
         assert 0.5e-5 < change < 5e-5
 
 
+@pytest.mark.parametrize(("frequency", "t0"), [(0.7, 1e9), (0.7, 1.7e9), (0.7, 1e12), (0.3, 1e9), (0.3, 1e12)])
+def test_a_slow_drive_whose_phase_rounds_to_the_same_number(frequency: float, t0: float) -> None:
+    """At round times ω t is the same number beside each: the next but one tells."""
+    drive = vv.ExpressionForce(force=lambda r, v, t: (np.cos(frequency * t) - r[0], 0.0 * r[0], 0.0 * r[0]))
+    scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), drive, t0=t0)
+    assert len(heard(lambda: scene.run(t=t0 + 1.0, method="dop853", rtol=1e-12))) == 1
+
+
 def test_what_counts_from_the_start_is_as_exact_there() -> None:
     """`DrivenForce` is told nothing of, and rightly: it goes as it would from zero with a phase that is exact."""
     scene = vv.Scene(BODY, vv.DrivenForce([1.0, 0.0, 0.0], frequency=50.0), t0=1.7e9)
