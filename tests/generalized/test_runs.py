@@ -282,3 +282,12 @@ def test_a_time_asked_for_twice_is_told_twice(name: str, method: str) -> None:
     assert states(system.run(twice, method=method)).tolist() == states(system.run(once, method=method))[rows].tolist()
     all_rows = several.run(once, method=method).position[:, rows]
     assert several.run(twice, method=method).position.tolist() == all_rows.tolist()
+
+
+def test_coordinates_of_all_copies_by_their_names() -> None:
+    runs = vv.systems.double_pendulum().ensemble(position=[[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]).run(t=[0.0, 0.5, 1.0])
+    for index, name in enumerate(runs.ensemble.system.coordinates):
+        np.testing.assert_array_equal(runs[name], runs.position[..., index])
+        np.testing.assert_array_equal(runs[name][1], runs[1][name])
+    with pytest.raises(vv.InvalidInput, match="there is no coordinate 'x'"):
+        runs["x"]

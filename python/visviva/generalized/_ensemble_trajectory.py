@@ -6,7 +6,7 @@ not have, after it failed or an event ended it, is NaN.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -61,14 +61,14 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     status : ndarray of Status, shape (B,)
     steps, evaluations : ndarray of int, shape (B,)
 
-    ``out[i]`` is the trajectory of one copy.
+    ``out[i]`` is the trajectory of one copy, ``out[name]`` a coordinate of all of them, shape (B, T).
 
     Examples
     --------
     >>> import visviva as vv
     >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-    >>> out.position.shape, out[1].position.shape
-    ((2, 2, 1), (2, 1))
+    >>> out.position.shape, out[1].position.shape, out["theta"].shape
+    ((2, 2, 1), (2, 1), (2, 2))
     """
 
     __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
@@ -121,7 +121,16 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     def __len__(self) -> int:
         return len(self.status)
 
-    def __getitem__(self, member: int) -> GeneralizedTrajectory:
+    @overload
+    def __getitem__(self, member: str) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, member: int) -> GeneralizedTrajectory: ...
+    def __getitem__(self, member: int | str) -> GeneralizedTrajectory | NDArray[np.float64]:
+        if isinstance(member, str):
+            coordinates = self.ensemble.system.coordinates
+            if member not in coordinates:
+                raise InvalidInput("name", f"there is no coordinate {member!r}; there are {list(coordinates)}")
+            return self.position[..., coordinates.index(member)]
         member = member_index(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
