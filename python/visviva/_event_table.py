@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 import numpy as np
 
 from visviva._arrays import whole_number
-from visviva._exported import Columns, Exported, chosen_columns
+from visviva._exported import Columns, Exported, chosen_columns, labels
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -28,7 +28,7 @@ __all__ = ["EventTable", "Lines"]
 Name = TypeVar("Name", bound=str)
 
 # What a table has beside its columns.
-_ABOUT = ("definitions", "coordinates")
+_ABOUT = ("definitions", "coordinates", "names")
 
 
 @known_keywords
@@ -133,6 +133,8 @@ class EventTable(Lines["EventColumnName"]):
         The copy of an ensemble; 0 of a single run.
     definitions : tuple of Event
         What was looked for, by `which`. Of a function its name alone, as of what is saved.
+    names : tuple of str
+        Those of the bodies, or none.
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
 
@@ -155,9 +157,10 @@ class EventTable(Lines["EventColumnName"]):
     velocity: NDArray[np.float64]
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
+    names: tuple[str, ...] = ()
 
     def plot(
-        self, component: Literal["x", "y", "z"] | None = None, *, body: int | None = None, ax: Axes | None = None
+        self, component: Literal["x", "y", "z"] | None = None, *, body: str | int | None = None, ax: Axes | None = None
     ) -> Axes:
         """Draw a body's place against its velocity at the events: of those of a plane, a Poincaré section of the run.
 
@@ -167,8 +170,8 @@ class EventTable(Lines["EventColumnName"]):
         ----------
         component : {"x", "y", "z"}, optional
             Which; by default that in which the places extend most.
-        body : int, optional
-            Of which body; the only one if not given.
+        body : str or int, optional
+            Of which body, by name or index; the only one if not given.
         ax : matplotlib.axes.Axes, optional
             Where; a new one if not given.
 
@@ -208,7 +211,7 @@ class EventTable(Lines["EventColumnName"]):
             name: (("event", *["body", "component"][: 2 * (getattr(self, name).ndim == 3)]), getattr(self, name))
             for name in chosen_columns(columns, known, known)
         }
-        return Columns({"event": np.arange(len(self)), "body": np.arange(self.position.shape[1])}, of)
+        return Columns({"event": np.arange(len(self)), "body": labels(self.names, self.position.shape[1])}, of)
 
     def __repr__(self) -> str:
         return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import whole_number
 from visviva._exported import AXES
 from visviva._keywords import one_of
+from visviva._names import body_index
 from visviva._style import legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -51,7 +51,7 @@ def plot_section(table: EventTable, component: object, body: object, ax: Axes | 
     bodies = table.position.shape[1]
     if body is None and bodies != 1:
         raise InvalidInput("body", f"say of which of {count(bodies, 'body', 'bodies')}, as body=0")
-    one = 0 if body is None else whole_number("body", body, 0, bodies - 1)
+    one = 0 if body is None else body_index("body", body, table.names, bodies)
     at = _component(component, table.position[:, [one]])
     axes = _points(table, table.position[:, one, at], table.velocity[:, one, at], ax)
     _label(axes, at)

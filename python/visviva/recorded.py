@@ -275,7 +275,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
 
         # Files of before they were kept have none.
         definitions = tuple(map(from_description, self._result.get("looked_for", ())))
-        return EventTable._made(self._result["events"], definitions=definitions)
+        return EventTable._made(self._result["events"], definitions=definitions, names=self._start._names)
 
     @property
     def collisions(self) -> CollisionTable:

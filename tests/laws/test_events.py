@@ -285,3 +285,13 @@ def test_tables_are_saved_and_pickled(tmp_path: Path) -> None:
     event = events.plane([0, 0, 1], [0, 0, 1], body=3, terminal=2)
     assert pickle.loads(pickle.dumps(event)) == event
     assert hash(event) == hash(events.plane([0, 0, 1], [0, 0, 1], body=3, terminal=2))
+
+
+def test_tables_of_events_know_the_names_of_bodies() -> None:
+    bodies = vv.Particles([1.0, 1e-3], [[0.0, 0, 0], [1.0, 0, 0]], [[0.0, 0, 0], [0, 1.0, 0]], names=["Sun", "Earth"])
+    passes = vv.events.plane([0.0, 0.0, 0.0], normal=[0.0, 1.0, 0.0])
+    table = vv.Scene(bodies, vv.Gravity(1.0)).run(t=20.0, events=[passes]).events
+    assert table.names == ("Sun", "Earth") == table[:1].names == table.of(0).names
+    assert list(table._exported(None).axes["body"]) == ["Sun", "Earth"]
+    with pytest.raises(vv.InvalidInput, match="body"):
+        table.plot(body="Mars")
