@@ -81,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
     stress = commands.add_parser("stress", help="how each method copes with extreme scenes")
     stress.add_argument("--long", action="store_true", help="with the cases that take minutes")
-    stress.add_argument("--methods", nargs="*", metavar="NAME", help="some methods (default: all)")
+    stress.add_argument("--methods", nargs="+", metavar="NAME", help="some methods (default: all)")
     stress.set_defaults(command=_stress)
     commands.add_parser("info", help="version, SIMD tier, threads, build profile").set_defaults(command=_info)
     return parser
@@ -101,8 +101,8 @@ def _positive(text: str) -> float:
 def _number(text: str) -> int:
     """How many: also as 1e5."""
     value = _positive(text)
-    if value < 1.0:
-        raise argparse.ArgumentTypeError(f"expected 1 or more, got {text}")
+    if value < 1.0 or value != int(value):
+        raise argparse.ArgumentTypeError(f"expected a whole number of 1 or more, got {text}")
     return int(value)
 
 

@@ -154,7 +154,11 @@ def _fit(
     """The scale of what is said, and what is left, over the degrees of freedom."""
     fitted = (angle >= _FITTED[0]) & (angle <= _FITTED[1]) & (said > 0.0)
     if fitted.sum() < 3:
-        raise vv.InvalidInput("events", "expected enough alpha particles that three angles are reached at least")
+        raise vv.InvalidInput(
+            "events",
+            "expected enough alpha particles that three angles are reached at least; in a foil that is thicker than "
+            "their range, about 20 µm, none are",
+        )
     relative = np.hypot(_ERROR, error[fitted] / said[fitted])
     ratio = counted[fitted] / said[fitted]
     # Errors are parts of what is said: the scale that leaves least is Σ r²/e² over Σ r/e², r = counted over said.

@@ -55,6 +55,7 @@ def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFi
         ["--days", "-5"],
         ["--days", "0"],
         ["--events", "0.5"],
+        ["--events", "1.5"],
     ],
 )
 def test_a_number_that_is_none_is_refused(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
