@@ -31,6 +31,14 @@ def oscillators(masses: list[float], frequencies: list[float]) -> vv.Lagrangian:
     return vv.Lagrangian(expression, [f"q{i}" for i in range(len(masses))])
 
 
+def quadratic(mass: np.ndarray, stiffness: np.ndarray) -> vv.Lagrangian:
+    def expression(q: list, v: list, t: object) -> object:
+        pairs = np.ndindex(mass.shape)
+        return sum(mass[i, j] * v[i] * v[j] - stiffness[i, j] * q[i] * q[j] for i, j in pairs) / 2
+
+    return vv.Lagrangian(expression, [f"q{i}" for i in range(len(mass))])
+
+
 @pytest.mark.parametrize(
     ("masses", "frequencies", "time"),
     [
@@ -62,6 +70,22 @@ def test_times_of_a_path_that_are_conjugate(per_half_turn: int) -> None:
     assert found.conjugate_points == pytest.approx(wanted, rel=2e-15, abs=0)
 
 
+def test_returns_at_times_of_a_path_are_each_counted() -> None:
+    """Rounding decides on which side of a time a neighbor is back: step by step 8 of 11 were counted."""
+    found = oscillators([1.0], [1.5]).accessory_problem((np.linspace(0.0, 8 * np.pi, 9), np.zeros((9, 1))))
+    assert found.conjugate_points == pytest.approx(half_turns([1.5], 8 * np.pi), rel=2e-15, abs=0)
+
+
+@pytest.mark.parametrize("seed", [8, 12, 14, 17])
+def test_double_returns_of_mixed_modes_at_times_of_a_path(seed: int) -> None:
+    random, frequencies = np.random.default_rng(seed), np.array([1.0, 1.0, 2.0])
+    mixing = np.linalg.qr(random.normal(size=(3, 3)))[0] * 10.0 ** random.uniform(-3, 3, 3)
+    system = quadratic(mixing.T @ mixing, mixing.T @ np.diag(frequencies**2) @ mixing)
+    times = np.append(np.linspace(0.0, 4 * np.pi, 17), 4 * np.pi * 1.001)
+    found = system.accessory_problem((times, np.zeros((18, 3))))
+    assert found.conjugate_points == pytest.approx(half_turns([1.0, 1.0, 2.0], times[-1]), rel=1e-13, abs=0)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_modes_that_are_mixed(seed: int) -> None:
     """Whatever the coordinates, in which the masses are no diagonal matrix, neighbors return when modes do."""
@@ -69,13 +93,7 @@ def test_modes_that_are_mixed(seed: int) -> None:
     n = 2 + seed % 3
     frequencies = np.sort(random.uniform(0.3, 6.0, n))
     mixing = np.linalg.qr(random.normal(size=(n, n)))[0] * 10.0 ** random.uniform(-6, 6, n)
-    mass, stiffness = mixing.T @ mixing, mixing.T @ np.diag(frequencies**2) @ mixing
-
-    def expression(q: list, v: list, t: object) -> object:
-        pairs = [(i, j) for i in range(n) for j in range(n)]
-        return sum(mass[i, j] * v[i] * v[j] - stiffness[i, j] * q[i] * q[j] for i, j in pairs) / 2
-
-    system = vv.Lagrangian(expression, [f"q{i}" for i in range(n)])
+    system = quadratic(mixing.T @ mixing, mixing.T @ np.diag(frequencies**2) @ mixing)
     found = system.accessory_problem((np.linspace(0.0, 5.0, 21), np.zeros((21, n))))
     assert found.conjugate_points == pytest.approx(half_turns(list(frequencies), 5.0), rel=1e-13, abs=0)
     assert found.eigenvalue == pytest.approx(

@@ -230,3 +230,14 @@ def test_where_a_potential_underflows_are_no_equilibria() -> None:
         position=[1.3e-10],
     )
     np.testing.assert_allclose([e.position[0] for e in bond.equilibria()], [1.275e-10], rtol=1e-12, atol=0)
+
+
+def test_a_turn_that_grows_is_unstable() -> None:
+    """H = x p_y − y p_x + (x² + y²)/2 turns, and what turns with it falls: equal imaginary eigenvalues, one vector."""
+    turning = vv.Hamiltonian(lambda q, p, t: q[0] * p[1] - q[1] * p[0] + (q[0] ** 2 + q[1] ** 2) / 2, ["x", "y"])
+    (found,) = turning.equilibria(near=[[0.1, 0.2, 0.0, 0.1]])
+    assert not found.stable
+    # Of both signs, and stable: two oscillators of which one counts backward.
+    backward = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2 - 2 * p[1] ** 2 - q[1] ** 2) / 2, ["x", "y"])
+    (found,) = backward.equilibria(near=[[0.1, 0.2, 0.0, 0.1]])
+    assert found.stable

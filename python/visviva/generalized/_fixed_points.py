@@ -154,8 +154,10 @@ def _reached(
         # Rates that change little, as beside a zero of higher order, count as others do.
         most = np.abs(slopes).max(axis=2, keepdims=True)
         most[most == 0.0] = 1.0
-        step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), rates / most[..., 0])
-        step = step * scales.units
+        with np.errstate(over="ignore"):
+            # A step without end is not a number further on.
+            wanted = rates / most[..., 0]
+        step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), wanted) * scales.units
         length = np.abs(step / alike).max(axis=1, keepdims=True)
         # Linear rates lead however far.
         linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
