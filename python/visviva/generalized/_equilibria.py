@@ -20,31 +20,19 @@ from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, settled
+from visviva.generalized._searches import SAME, by_sizes, distinguishing_coordinates, starts_of_a_search
 from visviva.generalized._stability import level_and_held
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._analysis import Linearization
-    from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["SAME", "Equilibrium", "by_sizes", "equilibria", "starts_of_a_search"]
+__all__ = ["Equilibrium", "equilibria"]
 
-#: Places that differ by less than this part of their sizes are one.
-SAME = 1e-8
-#: Starts of a search for equilibria, and of one of many coordinates.
-_MOST_STARTS = 2000
-_MOST_OF_MANY = 256
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
-#: Starts of which one is this many times as large as another are looked at by themselves: its rounding is no measure of
-#: what that one finds.
-_ALIKE = 1e3
-#: A place is known to this part of the size of the starts.
-_LOST = 1e-14
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -86,27 +74,6 @@ class Equilibrium(Record):
     momentum: NDArray[np.float64]
 
 
-def starts_of_a_search(n: int) -> NDArray[np.float64]:
-    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
-    side = max(2, int(_MOST_STARTS ** (1.0 / n)))
-    if 2**n <= _MOST_OF_MANY:
-        line = np.linspace(-np.pi, np.pi, min(side, 25))
-        # Not on the symmetry lines themselves, where Newton's method may be caught.
-        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
-        return np.stack([axis.ravel() for axis in grid], axis=1)
-    # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
-    root = 2.0
-    for _ in range(64):
-        root = (1.0 + root) ** (1.0 / (n + 1))
-    spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
-    places = np.pi * (2.0 * spread - 1.0)
-    # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
-    aside = 1e-3 * np.arange(1, n + 1)
-    places[::2] = np.pi * np.rint(places[::2] / np.pi) + aside
-    # What hangs straight down and what stands straight up are looked for whatever the spread hits.
-    return np.concatenate([places, [aside, np.pi - aside]])
-
-
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
     n = len(system.coordinates)
@@ -122,52 +89,13 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     return _found(system, starts, everywhere=True)
 
 
-def by_sizes(
-    system: Lagrangian | Hamiltonian,
-    starts: NDArray[np.float64],
-    sizes: NDArray[np.float64],
-    search: Callable[[NDArray[np.float64]], list[Equilibrium]],
-) -> list[Equilibrium]:
-    """What a search finds from starts (S, m) of sizes (S), those of about one size together: of several the nearest."""
-    distinguishing = np.ones(len(system.coordinates), dtype=bool)
-    distinguishing[system._structure["cyclic"]] = False
-    found: list[Equilibrium] = []
-    refused: InvalidInput | None = None
-    left = np.argsort(sizes, kind="stable")
-    while len(left):
-        # Where nothing is far from zero the next size is that of the group.
-        first = sizes[left][sizes[left] > 0.0]
-        together = sizes[left] <= _ALIKE * (first[0] if len(first) else 0.0)
-        group, left = left[together], left[~together]
-        try:
-            reached = search(starts[group])
-        except InvalidInput as refusal:
-            refused = refused or refusal
-            continue
-        size = float(sizes[group].max())
-        found += [each for each in reached if not any(_agree(each, other, size, distinguishing) for other in found)]
-    if refused is not None and not found:
-        raise refused
-    return sorted(found, key=lambda each: (*each.position, *each.momentum))
-
-
-def _agree(one: Equilibrium, other: Equilibrium, size: float, distinguishing: NDArray[np.bool_]) -> bool:
-    """Whether two equilibria are in one place, of which a search from starts of a size has found the first."""
-    apart = np.abs(one.position - other.position)[distinguishing].max(initial=0.0)
-    most = max(np.abs(one.position).max(initial=0.0), np.abs(other.position).max(initial=0.0))
-    momenta = np.abs(one.momentum - other.momentum).max(initial=0.0)
-    largest = max(np.abs(one.momentum).max(initial=0.0), np.abs(other.momentum).max(initial=0.0))
-    return bool(apart <= SAME * most + _LOST * size and momenta <= SAME * largest)
-
-
 def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool) -> list[Equilibrium]:
     """Equilibria from starts (S, n) of about one size, or of those within a turn."""
     if system._constraints():
         return _of_constrained(system, starts, everywhere=everywhere)
     n, sizes = len(system.coordinates), Sizes(system)
     reached = _reached(system, starts, sizes, insist=not everywhere)
-    distinguishing = np.ones(n, dtype=bool)
-    distinguishing[system._structure["cyclic"]] = False
+    distinguishing = distinguishing_coordinates(system)
     if everywhere:
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
@@ -282,8 +210,7 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
             every[index] = each if each and each[1] else every[index]
     elif not insist:
         # Where a start is left as it is nothing acts, as where a potential underflows: it has been found by no step.
-        moved = np.ones(n, dtype=bool)
-        moved[system._structure["cyclic"]] = False
+        moved = distinguishing_coordinates(system)
         grid = starts if system.position is None else starts[:-1]
         for index, start in enumerate(grid):
             each = every[index]

@@ -14,8 +14,9 @@ from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import eigenmodes, of_matrices
 from visviva.generalized._constrained_motions import BALANCED
-from visviva.generalized._fixed_points import fixed_points, rates_and_slopes, rounding_of_slopes, slopes_at
+from visviva.generalized._fixed_points import fixed_points, rounding_of_slopes, slopes_at
 from visviva.generalized._matrices import Matrices
+from visviva.generalized._newton import rates_and_slopes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

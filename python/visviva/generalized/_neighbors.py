@@ -14,8 +14,8 @@ import numpy as np
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._calculus import Calculus
 from visviva.generalized._consistency import constraints_and_rates
-from visviva.generalized._fixed_points import rates_and_slopes
 from visviva.generalized._matrices import balanced_units
+from visviva.generalized._newton import rates_and_slopes
 from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:

@@ -1,0 +1,100 @@
+"""Where searches for equilibria begin, and which of the places that they reach are one.
+
+The one idea: everything is judged by the sizes of the starts that lead to it: those of one size are looked at together,
+and those of another by themselves.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from visviva.generalized._equilibria import Equilibrium
+    from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["SAME", "by_sizes", "distinguishing_coordinates", "starts_of_a_search"]
+
+#: Places that differ by less than this part of their sizes are one.
+SAME = 1e-8
+#: Starts of a search for equilibria, and of one of many coordinates.
+_MOST_STARTS = 2000
+_MOST_OF_MANY = 256
+#: Starts of which one is this many times as large as another are looked at by themselves: its rounding is no measure of
+#: what that one finds.
+_ALIKE = 1e3
+#: A place is known to this part of the size of the starts.
+_LOST = 1e-14
+
+
+def starts_of_a_search(n: int) -> NDArray[np.float64]:
+    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
+    side = max(2, int(_MOST_STARTS ** (1.0 / n)))
+    if 2**n <= _MOST_OF_MANY:
+        line = np.linspace(-np.pi, np.pi, min(side, 25))
+        # Not on the symmetry lines themselves, where Newton's method may be caught.
+        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
+        return np.stack([axis.ravel() for axis in grid], axis=1)
+    # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (n + 1))
+    spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
+    places = np.pi * (2.0 * spread - 1.0)
+    # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
+    aside = 1e-3 * np.arange(1, n + 1)
+    places[::2] = np.pi * np.rint(places[::2] / np.pi) + aside
+    # What hangs straight down and what stands straight up are looked for whatever the spread hits.
+    return np.concatenate([places, [aside, np.pi - aside]])
+
+
+def distinguishing_coordinates(system: Lagrangian | Hamiltonian) -> NDArray[np.bool_]:
+    """Which coordinates (n) tell places apart: all but those that nothing depends on."""
+    distinguishing = np.ones(len(system.coordinates), dtype=bool)
+    distinguishing[system._structure["cyclic"]] = False
+    return distinguishing
+
+
+def by_sizes(
+    system: Lagrangian | Hamiltonian,
+    starts: NDArray[np.float64],
+    sizes: NDArray[np.float64],
+    search: Callable[[NDArray[np.float64]], list[Equilibrium]],
+) -> list[Equilibrium]:
+    """What a search finds from starts (S, m) of sizes (S), those of about one size together: of several the nearest."""
+    distinguishing = distinguishing_coordinates(system)
+    found: list[Equilibrium] = []
+    refused: InvalidInput | None = None
+    left = np.argsort(sizes, kind="stable")
+    while len(left):
+        # Where nothing is far from zero the next size is that of the group.
+        first = sizes[left][sizes[left] > 0.0]
+        together = sizes[left] <= _ALIKE * (first[0] if len(first) else 0.0)
+        group, left = left[together], left[~together]
+        try:
+            reached = search(starts[group])
+        except InvalidInput as refusal:
+            refused = refused or refusal
+            continue
+        size = float(sizes[group].max())
+        found += [each for each in reached if not any(_agree(each, other, size, distinguishing) for other in found)]
+    if refused is not None and not found:
+        raise refused
+    return sorted(found, key=lambda each: (*each.position, *each.momentum))
+
+
+def _agree(one: Equilibrium, other: Equilibrium, size: float, distinguishing: NDArray[np.bool_]) -> bool:
+    """Whether two equilibria are in one place, of which a search from starts of a size has found the first."""
+    apart = np.abs(one.position - other.position)[distinguishing].max(initial=0.0)
+    most = max(np.abs(one.position).max(initial=0.0), np.abs(other.position).max(initial=0.0))
+    momenta = np.abs(one.momentum - other.momentum).max(initial=0.0)
+    largest = max(np.abs(one.momentum).max(initial=0.0), np.abs(other.momentum).max(initial=0.0))
+    return bool(apart <= SAME * most + _LOST * size and momenta <= SAME * largest)
