@@ -223,7 +223,7 @@ def test_where_a_potential_underflows_are_no_equilibria() -> None:
     """Starts of the search were told as they are, a dozen of them as stable."""
     steep = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + np.exp(-300 * q[0] ** 2), ["x"])
     for form in (steep, steep.hamiltonian()):
-        assert [e.position[0] for e in form.equilibria() if e.stable] == [0.0]
+        assert [(e.position[0], e.stable) for e in form.equilibria()] == [(0.0, True)]
     bond = vv.Lagrangian(
         lambda q, v, t: 1.6e-27 * v[0] ** 2 / 2 - 7.4e-19 * (1 - np.exp(-1.81e10 * (q[0] - 1.275e-10))) ** 2,
         ["r"],

@@ -20,7 +20,13 @@ from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, settled
-from visviva.generalized._searches import SAME, by_sizes, distinguishing_coordinates, starts_of_a_search
+from visviva.generalized._searches import (
+    SAME,
+    by_sizes,
+    distinguishing_coordinates,
+    starts_of_a_search,
+    where_something_acts,
+)
 from visviva.generalized._stability import level_and_held
 
 if TYPE_CHECKING:
@@ -97,6 +103,8 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool)
     reached = _reached(system, starts, sizes, insist=not everywhere)
     distinguishing = distinguishing_coordinates(system)
     if everywhere:
+        if distinguishing.any():
+            reached = reached[where_something_acts(lambda at: matrices_along(system, at), reached, starts, n)]
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
         reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
@@ -208,14 +216,6 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
     if insist and without:
         for index, each in zip(without, ends(starts[without], descending=True), strict=True):
             every[index] = each if each and each[1] else every[index]
-    elif not insist:
-        # Where a start is left as it is nothing acts, as where a potential underflows: it has been found by no step.
-        moved = distinguishing_coordinates(system)
-        grid = starts if system.position is None else starts[:-1]
-        for index, start in enumerate(grid):
-            each = every[index]
-            if each and moved.any() and (np.asarray(each[0]) == start)[moved].all():
-                every[index] = None
     found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)

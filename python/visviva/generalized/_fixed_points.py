@@ -20,7 +20,13 @@ from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
 from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
 from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
 from visviva.generalized._probe import terms_of
-from visviva.generalized._searches import SAME, by_sizes, distinguishing_coordinates, starts_of_a_search
+from visviva.generalized._searches import (
+    SAME,
+    by_sizes,
+    distinguishing_coordinates,
+    starts_of_a_search,
+    where_something_acts,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -72,9 +78,8 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
         states = np.concatenate([states, reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.concatenate([distinguishing_coordinates(system), np.ones(n, dtype=bool)])
     if everywhere:
-        # Where a start is left as it is nothing acts, as where a potential underflows: it has been found by no step.
-        still = (states == starts[begun])[:, :n] | ~distinguishing[:n]
-        states = states[~still.all(axis=1) | ~distinguishing[:n].any()]
+        if distinguishing[:n].any():
+            states = states[where_something_acts(lambda at: _forces(system, at), states, starts, n)]
         # All places along a cyclic coordinate are alike, and those beyond a turn are the same or far away.
         states[:, ~distinguishing] = 0.0
         states = states[np.abs(states[:, :n]).max(axis=1, initial=0.0) <= np.pi + 1e-6]
@@ -88,6 +93,13 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
     energy = _energy(system)
     places = told_apart(energy, places, size, lambda _: scales.units)
     return [_equilibrium(system, energy, place, scales) for place in sorted(places, key=tuple)]
+
+
+def _forces(system: Hamiltonian, states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rates of momenta (S, n) at states, and their derivatives by coordinates (S, n, n)."""
+    n = states.shape[1] // 2
+    rates, slopes = rates_and_slopes(system, states)
+    return rates[:, n:], slopes[:, n:, :n]
 
 
 def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64], scales: Scales) -> Equilibrium:

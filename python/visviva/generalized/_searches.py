@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["SAME", "by_sizes", "distinguishing_coordinates", "starts_of_a_search"]
+__all__ = ["SAME", "by_sizes", "distinguishing_coordinates", "starts_of_a_search", "where_something_acts"]
 
 #: Places that differ by less than this part of their sizes are one.
 SAME = 1e-8
@@ -31,6 +31,9 @@ _MOST_OF_MANY = 256
 #: Starts of which one is this many times as large as another are looked at by themselves: its rounding is no measure of
 #: what that one finds.
 _ALIKE = 1e3
+#: Forces are looked at this far aside, and are none where they have no digits left.
+_ASIDE = 1e-3 * np.pi
+_UNDERFLOWN = float(np.finfo(float).tiny / np.finfo(float).eps)
 #: A place is known to this part of the size of the starts.
 _LOST = 1e-14
 
@@ -61,6 +64,30 @@ def distinguishing_coordinates(system: Lagrangian | Hamiltonian) -> NDArray[np.b
     distinguishing = np.ones(len(system.coordinates), dtype=bool)
     distinguishing[system._structure["cyclic"]] = False
     return distinguishing
+
+
+def where_something_acts(
+    forces: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]],
+    places: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    coordinates: int,
+) -> NDArray[np.bool_]:
+    """Whether forces have slopes at places (S, m), or are on both sides of the first numbers of these.
+
+    Where a potential underflows all is in balance, and no place is an equilibrium more than another. Of what is free at
+    all starts it is everywhere.
+    """
+
+    def largest(of: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        found, slopes = (np.where(np.isfinite(each), np.abs(each), 0.0) for each in forces(of))
+        return found.max(axis=1), slopes.max(axis=(1, 2))
+
+    if not (largest(starts)[0] > 0.0).any():
+        return np.ones(len(places), dtype=bool)
+    steps = _ASIDE * np.eye(coordinates, places.shape[1])
+    beside = [np.minimum(*(largest(places + sign * step)[0] for sign in (1.0, -1.0))) for step in steps]
+    acts: NDArray[np.bool_] = np.maximum(largest(places)[1], np.max(beside, axis=0)) > _UNDERFLOWN
+    return acts
 
 
 def by_sizes(
