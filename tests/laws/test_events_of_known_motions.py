@@ -109,3 +109,22 @@ def test_a_far_body_loosens_nothing_about_a_center_at_the_origin(far: float) -> 
     out = scene.run(t=20.0, method="dop853", rtol=1e-13)
     # What dop853 comes to at that tolerance in three turns.
     np.testing.assert_allclose(out.position[-1, 0], [np.cos(20.0), np.sin(20.0), 0.0], rtol=0, atol=3e-11)
+
+
+@pytest.mark.parametrize("name", ["harmonic", "Kepler", "rotating"])
+def test_copies_about_a_far_center_have_the_bits_of_one(name: str) -> None:
+    """Each copy has the tolerance of its own bodies: own masses, events, one thread and three."""
+    forces, random = CENTERED[name][0]((1e6, 0.0, 0.0)), np.random.default_rng(0)
+    place = np.array([[1e6 + 1.0, 0, 0], [1e6, 2.0, 0]]) + 1e-2 * random.normal(size=(11, 2, 3))
+    velocity, mass = np.array([[0, 1.1, 0], [0.7, 0, 0.1]]), random.uniform(1.0, 3.0, (11, 2))
+    passes = [vv.events.plane((1e6, 0.1, 0.0), (0.0, 1.0, 0.0), body=0)]
+    copies = vv.Scene(vv.Particles(mass[0], place[0], velocity), forces).ensemble(position=place, mass=mass)
+    one, three = (copies.run(t=[0.0, 5.0, 20.0], events=passes, threads=threads) for threads in (1, 3))
+    assert len(one.events) >= 11
+    for made in ("t", "position", "member"):
+        np.testing.assert_array_equal(getattr(one.events, made), getattr(three.events, made))
+    np.testing.assert_array_equal(one.position, three.position)
+    for copy in range(11):
+        alone = vv.Scene(vv.Particles(mass[copy], place[copy], velocity), forces).run([0.0, 5.0, 20.0], events=passes)
+        np.testing.assert_array_equal(one.position[copy], alone.position)
+        np.testing.assert_array_equal(one.events.t[one.events.member == copy], alone.events.t)
