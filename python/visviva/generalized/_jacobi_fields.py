@@ -58,8 +58,8 @@ class Linear:
         self.nodes, self._weights = _collocation()
         self._last = _last_coefficients(self.nodes)
         self._known: dict[int, _Coefficients] = {}
-        every = np.arange(len(self.lengths))
-        kinetic = self.second(every, np.full((len(every), 1), 0.5))[:, 0, self.n :, self.n :]
+        halfway = self.second(np.arange(len(self.lengths)), np.full((len(self.lengths), 1), 0.5))[:, 0]
+        mixed, kinetic = halfway[:, : self.n, self.n :], halfway[:, self.n :, self.n :]
         diagonal = np.diagonal(kinetic, axis1=-2, axis2=-1)
         with np.errstate(divide="ignore", invalid="ignore"):
             sizes = np.sqrt(diagonal)
@@ -68,7 +68,7 @@ class Linear:
             raise _without_minimum()
         # Powers of two: no digit of the coefficients changes.
         self._units = np.exp2(np.rint(np.log2(sizes).mean(axis=0)))
-        mixed = self.second(every, np.full((len(every), 1), 0.5))[:, 0, : self.n, self.n :].mean(axis=0)
+        mixed = mixed.mean(axis=0) / self._units[:, None] / self._units
         self._rate[: self.n, self.n :] = 0.5 * (mixed + mixed.T)
         self._rate[self.n :, : self.n] = self._rate[: self.n, self.n :].T
         self._fewest = 1 if system.autonomous else _FEWEST_IN_TIME
