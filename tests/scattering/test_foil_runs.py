@@ -94,18 +94,23 @@ def test_draws_are_where_they_are_written_down():
     assert path[0] * 1e4 == pytest.approx(1.0 / (number * np.pi * radius[0] ** 2), rel=1e-14, abs=0)
 
 
-def test_ctrl_c_keeps_what_is_counted():
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_keeps_what_is_counted(threads):
     foil = S.Foil("gold", 0.4)
     asked = {"beam_energy": 7.687e6, "n_events": 40_000, "seed": 1, "tally": "transmitted_angle"}
+    seen = []
 
     def stop(done, _):
-        if done > 100:
+        seen.append(done)
+        if done > 15_000:
             raise KeyboardInterrupt
 
     with pytest.raises(vv.Interrupted) as caught:
-        foil.run("alpha", progress=stop, **asked)
+        foil.run("alpha", progress=stop, threads=threads, **asked)
     part = caught.value.result
     assert 0 < part.n_events < 40_000
+    if threads == 1:  # of several a chunk of each is lost, and what others do while one waits for its turn
+        assert part.n_events >= seen[-1]
     again = foil.run("alpha", **(asked | {"n_events": part.n_events}))
     assert again == part
 

@@ -42,9 +42,11 @@ use draws::Draws;
 use medium::Medium;
 use std::sync::Arc;
 
-/// Events of a chunk, and chunks to each thread and round.
-const EVENTS_PER_CHUNK: u64 = 2048;
-const CHUNKS_PER_THREAD: u64 = 32;
+/// Events of a chunk: an interrupted run loses at most as many of each thread, behind the first that is not done. They are
+/// long, from half a microsecond to milliseconds, so few of them are worth being handed out.
+const EVENTS_PER_CHUNK: u64 = 64;
+/// Chunks to each thread and round.
+const CHUNKS_PER_THREAD: u64 = 1024;
 
 /// The least energy of a beam in eV. Slower ions meet several atoms at once: W. Eckstein, *Computer Simulation of Ion-Solid
 /// Interactions* (1991), puts the end of collisions of two at some ten eV.
