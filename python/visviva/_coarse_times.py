@@ -7,6 +7,8 @@ of the package count from the start of the run; of an expression nobody knows wh
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +20,13 @@ from visviva.errors import AccuracyWarning, InvalidInput
 from visviva.forces import ExpressedForce
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from visviva.scene import Scene
 
-__all__ = ["warn_of_coarse_times"]
+__all__ = ["warn_if_coarse", "warn_of_coarse_times"]
 
 _TRIED = 17
 """Times of the run at which forces are asked."""
@@ -32,25 +36,40 @@ _BESIDE = (1, -1, 2, 3)
 
 def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
     """Warn of a force that changes by more than the tolerance from one time to the next number."""
-    times = np.linspace(float(asked["t0"]), float(asked["times"][-1]), _TRIED)
-    apart = float(np.spacing(np.abs(times).max()))
+    span = float(asked["t0"]), float(asked["times"][-1])
     for index, force in enumerate(scene.forces):
         if not isinstance(force, ExpressedForce) or not looks_at_time(force.nodes):
             continue
-        try:
-            here, *beside = (_told(scene, index, times + off * apart) for off in (0, *_BESIDE))
-        except InvalidInput:
-            continue  # where it is not known the run itself has said so
-        largest = np.abs(here).max()
-        changes = [np.abs(there - here).max() / abs(off) for off, there in zip(_BESIDE, beside, strict=True)]
-        change = float(max(changes) / largest) if largest > 0.0 else 0.0
-        if change > asked["rtol"]:
-            message = (
-                f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next forces[{index}] "
-                f"changes by {change:.2g} of itself: no method errs by less; count time from the start of the run, "
-                "with t0 = 0, and put what has gone before into a phase"
-            )
-            warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
+        with suppress(InvalidInput):  # where it is not known the run itself has said so
+            warn_if_coarse(partial(_told, scene, index), span, asked["rtol"], f"forces[{index}] changes")
+
+
+def warn_if_coarse(
+    told: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    span: tuple[float, float],
+    rtol: float,
+    what: str,
+    *,
+    alike: bool = True,
+) -> None:
+    """Warn where what is told of times (T,), in rows, changes by more than the tolerance from one to the next number.
+
+    What is not alike, in units of its own each, is measured by itself.
+    """
+    times = np.linspace(*span, _TRIED)
+    apart = float(np.spacing(np.abs(times).max()))
+    here, *beside = (told(times + off * apart) for off in (0, *_BESIDE))
+    with np.errstate(all="ignore"):
+        sizes = np.abs(here).max(axis=None if alike else 0)
+        shares = [np.abs(there - here) / (abs(off) * sizes) for off, there in zip(_BESIDE, beside, strict=True)]
+    change = float(np.nanmax(np.where(sizes > 0.0, shares, 0.0)))
+    if change > rtol:
+        message = (
+            f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next {what} "
+            f"by {change:.2g} of itself: no method errs by less; count time from the start of the run, "
+            "with t0 = 0, and put what has gone before into a phase"
+        )
+        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
 def _told(scene: Scene, index: int, times: NDArray[np.float64]) -> NDArray[np.float64]:

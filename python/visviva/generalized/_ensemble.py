@@ -15,7 +15,7 @@ from visviva._text import count
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._consistency import projected, wants_projection
 from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, member_index
-from visviva.generalized._resolved import warn_if_unresolved
+from visviva.generalized._resolved import warn_if_unresolved, warn_of_coarse_times
 from visviva.generalized._runs import RTOL
 from visviva.generalized._source import _label
 from visviva.generalized._starts import is_beyond_domain
@@ -206,6 +206,7 @@ class GeneralizedEnsemble(Shown):
         if result is None:
             result = self.system._run(asked, self._states, self._parameters, threads, progress)
         out = GeneralizedEnsembleTrajectory(self, result, asked)
+        warn_of_coarse_times(self.system, asked, self._states, self._parameters)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
         lasts = out._states[:, -1], float(out.t[-1])

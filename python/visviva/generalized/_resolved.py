@@ -16,9 +16,11 @@ from visviva._accuracy import (
     TOLERATED,
     limit_of_energies,
     steps_may_be_taken_again,
+    times_may_be_coarse,
     warn_of_energy,
     warn_of_step,
 )
+from visviva._coarse_times import warn_if_coarse
 from visviva.errors import Interrupted
 
 if TYPE_CHECKING:
@@ -26,10 +28,13 @@ if TYPE_CHECKING:
 
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["warn_if_unresolved"]
+__all__ = ["warn_if_unresolved", "warn_of_coarse_times"]
 
 _ROUNDINGS = 8.0
 """So many times what a last digit makes of an energy is rounding."""
+
+_WORTH_A_WORD = 1e-9
+"""What times make of the rates, that is told; tolerances are smaller where nobody asked for them."""
 
 _ON_THE_WAY = 17
 """Times at which a motion is looked at whose energies at its ends may be no measure."""
@@ -105,6 +110,24 @@ def warn_if_unresolved(
         if error > limit:
             warn_of_energy(asked, error, int(copy) if copies > 1 else None)
             return
+
+
+def warn_of_coarse_times(
+    system: GeneralizedSystem, asked: dict[str, Any], starts: NDArray[np.float64], values: NDArray[np.float64]
+) -> None:
+    """Warn where the rates at states (B, 2n) change from one time to the next number by more than is asked for."""
+    if system._structure["autonomous"] or not times_may_be_coarse(*asked["span"]):
+        return
+    copies = len(starts)
+
+    def told(times: NDArray[np.float64]) -> NDArray[np.float64]:
+        each = np.repeat(times, copies)
+        states, parameters = (np.tile(rows, (len(times), 1)) for rows in (starts, values))
+        rates: NDArray[np.float64] = system._model.rates(each, states, parameters)
+        return rates.reshape(len(times), copies, -1)
+
+    limit = max(asked["rtol"], _WORTH_A_WORD)
+    warn_if_coarse(told, asked["span"], limit, "a rate of the system changes", alike=False)
 
 
 def _look_at_steps(done: _Done) -> None:

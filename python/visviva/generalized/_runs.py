@@ -13,7 +13,7 @@ from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._methods import check_atol, check_rtol, method_name
-from visviva.generalized._resolved import warn_if_unresolved
+from visviva.generalized._resolved import warn_if_unresolved, warn_of_coarse_times
 from visviva.generalized._states import States, as_system
 from visviva.status import Status
 
@@ -195,7 +195,8 @@ class Runs(States):
         -----
         AccuracyWarning
             The energy is conserved, but at the end off by more than a hundredth of kinetic + |potential| (a tenth, of
-            steps of `dt`): something shorter than a step was passed over, or the tolerance resolves nothing.
+            steps of `dt`): something shorter than a step was passed over, or the tolerance resolves nothing. Times
+            are so far from zero that rates change from one to the next number, by 1e-9 or more.
 
         References
         ----------
@@ -217,6 +218,7 @@ class Runs(States):
         asked, outputs = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         self._check_start()
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
+        warn_of_coarse_times(as_system(self), asked, start[None, :], self._values[None, :])
         if STATUS[result["endings"][0]] is Status.STOPPED and _is_end(t):
             _end_at_the_stop(result)
         out = GeneralizedTrajectory(as_system(self), result, asked)
