@@ -2,12 +2,15 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::Turns;
 use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
@@ -51,20 +54,29 @@ struct Harmonic {
     center: [f64; 3],
 }
 
+impl Harmonic {
+    fn pulls(&self, context: &Context<'_>) -> Kernel {
+        let k = |system: &System<'_>| context.units.take(context.own(self, system).k, STIFFNESS);
+        let center = |system: &System<'_>, c: usize| {
+            context.units.take(context.own(self, system).center[c], [1, 0, 0])
+        };
+        Kernel {
+            shape: context.shape,
+            center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
+            square: context.per_body(|system, slot| k(system) / system.mass[slot]),
+        }
+    }
+}
+
 impl ForceTerm for Harmonic {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let k = |system: &System<'_>| context.units.take(context.own(self, system).k, STIFFNESS);
-        let center = |system: &System<'_>, c: usize| {
-            context.units.take(context.own(self, system).center[c], [1, 0, 0])
-        };
-        Box::new(Kernel {
-            shape: context.shape,
-            center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
-            square: context.per_body(|system, slot| k(system) / system.mass[slot]),
-        })
+        Box::new(self.pulls(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        beside(other, None, context, || self.pulls(context))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let linear = Self { center: [0.0; 3], ..*self };
@@ -156,6 +168,25 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool)
                 a[at] = if first { term } else { a[at] + term };
             }
         }
+    }
+}
+
+impl Beside for Kernel {
+    const VELOCITY: bool = false;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        place: [V; 3],
+        _: [V; 3],
+        _: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        let square = V::load(self.square[0]);
+        let mut term = [V::zero(); 3];
+        for c in 0..if PLANAR { 2 } else { 3 } {
+            term[c] = square * (V::load(self.center[c][0]) - place[c]);
+        }
+        term
     }
 }
 

@@ -6,7 +6,7 @@ use super::context::Context;
 use super::following::{Following, Leaders};
 use super::links::{check_counts, of_link};
 use super::series::Series;
-use super::sources::{Kernel, Law, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -275,29 +275,31 @@ impl Law for Flattening {
     /// With z = axis·d and s = z/r: GM r⁻⁵ 3/2 J2 R² ((5 s² − 1) d − 2 z axis), and
     /// GM r⁻⁷ 5/8 J4 R⁴ ((63 s⁴ − 42 s² + 3) d − (28 s² − 12) z axis).
     #[inline(always)]
-    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> [S; 3] {
+    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> Pull<S> {
         let Relative { d, square: r2, inverse_cube: w, .. } = *relative;
         let [second, fourth] = self.harmonics[source];
         let [x, y, z] = [S::splat(self.axis[0]), S::splat(self.axis[1]), S::splat(self.axis[2])];
         let along = d[2].multiply_add(z, d[1].multiply_add(y, d[0] * x));
+        // As few operations as can be wait for r⁻³ one after another.
         let inverse = w * r2;
+        let sine = along * inverse;
         let inverse2 = inverse * inverse;
-        let square = along * along * inverse2;
-        let fifth = strength * w * inverse2;
-        let mut radial = S::splat(second) * S::splat(5.0).multiply_add(square, S::splat(-1.0));
+        let mut radial = (S::splat(5.0 * second) * along * inverse).multiply_add(sine, S::splat(-second));
         let mut axial = S::splat(-2.0 * second);
         if fourth != 0.0 {
-            let share = S::splat(fourth) * inverse2;
+            let (square, share) = (sine * sine, S::splat(fourth) * inverse2);
             let polynomial = S::splat(63.0).multiply_add(square, S::splat(-42.0));
-            radial = share.multiply_add(polynomial.multiply_add(square, S::splat(3.0)), radial);
+            radial = share.multiply_add(S::splat(3.0), radial);
+            radial = (share * square).multiply_add(polynomial, radial);
             axial = share.multiply_add(S::splat(-28.0).multiply_add(square, S::splat(12.0)), axial);
         }
-        let (radial, axial) = (fifth * radial, fifth * axial * along);
-        [
+        let axial = axial * along;
+        let vector = [
             radial.multiply_add(d[0], axial * x),
             radial.multiply_add(d[1], axial * y),
             radial.multiply_add(d[2], axial * z),
-        ]
+        ];
+        Pull { factor: strength * w * inverse2, vector }
     }
 }
 

@@ -6,7 +6,7 @@ use super::context::Context;
 use super::following::{Following, Leaders};
 use super::oblate::{CONSTANT, check_sources, sources_act};
 use super::series::Series;
-use super::sources::{Kernel, Law, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -128,20 +128,20 @@ impl Law for Schwarzschild {
     const VELOCITY: bool = true;
 
     #[inline(always)]
-    fn pull<S: Real>(&self, _: usize, strength: S, relative: &Relative<S>) -> [S; 3] {
+    fn pull<S: Real>(&self, _: usize, strength: S, relative: &Relative<S>) -> Pull<S> {
         let Relative { d, velocity: v, square: r2, inverse_cube: w } = *relative;
         let v2 = v[2].multiply_add(v[2], v[1].multiply_add(v[1], v[0] * v[0]));
         let product = d[2].multiply_add(v[2], d[1].multiply_add(v[1], d[0] * v[0]));
         let four = S::splat(4.0) * strength;
-        let factor = strength * w * S::splat(self.inverse_square);
         // 4 GM/r − v², 1/r being r² r⁻³.
-        let radial = factor * (four * (w * r2) - v2);
-        let moving = factor * S::splat(4.0) * product;
-        [
+        let radial = four.multiply_add(w * r2, -v2);
+        let moving = S::splat(4.0) * product;
+        let vector = [
             radial.multiply_add(d[0], moving * v[0]),
             radial.multiply_add(d[1], moving * v[1]),
             radial.multiply_add(d[2], moving * v[2]),
-        ]
+        ];
+        Pull { factor: strength * S::splat(self.inverse_square) * w, vector }
     }
 }
 

@@ -64,9 +64,13 @@ impl RotatingFrame {
         let center = |system: &System<'_>, c: usize| {
             context.units.take(context.own(self, system).center[c], [1, 0, 0])
         };
+        let omega = [0, 1, 2].map(|c| context.per_system(|system| omega(system, c)));
+        let squared = |((&x, &y), &z): ((&Lanes, &Lanes), &Lanes)| x * x + y * y + z * z;
         Kernel {
             shape: context.shape,
-            omega: [0, 1, 2].map(|c| context.per_system(|system| omega(system, c))),
+            twice: [0, 1, 2].map(|c| omega[c].iter().map(|&x| x + x).collect()),
+            square: omega[0].iter().zip(&omega[1]).zip(&omega[2]).map(squared).collect(),
+            omega,
             center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
             there: context.per_body(|_, _| 1.0),
         }
@@ -155,8 +159,10 @@ impl ForceTerm for RotatingFrame {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    /// Of each block.
+    /// Of each block ω, twice that, and its square.
     omega: [Vec<Lanes>; 3],
+    twice: [Vec<Lanes>; 3],
+    square: Vec<Lanes>,
     center: [Vec<Lanes>; 3],
     /// One in the lanes of bodies, zero in the others, which stay at rest: the error of a step is measured over all.
     there: Vec<Lanes>,
@@ -209,20 +215,20 @@ fn turned<V: Vector8, const COMPONENTS: usize>(
 ) -> [V; 3] {
     let (mut omega, mut twice, mut d) = ([V::zero(); 3], [V::zero(); 3], [V::zero(); 3]);
     for c in 0..3 {
-        omega[c] = V::load(force.omega[c][block]);
-        twice[c] = omega[c] + omega[c];
+        (omega[c], twice[c]) = (V::load(force.omega[c][block]), V::load(force.twice[c][block]));
     }
     for c in 0..COMPONENTS {
         d[c] = place[c] - V::load(force.center[c][block]);
     }
-    let square = omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2];
-    let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
+    let square = V::load(force.square[block]);
+    let along = omega[2].multiply_add(d[2], omega[1].multiply_add(d[1], omega[0] * d[0]));
     let there = V::load(force.there[row]);
     let mut term = [V::zero(); 3];
     for c in 0..COMPONENTS {
         let (e, f) = ((c + 1) % 3, (c + 2) % 3);
-        let turning = velocity[e] * twice[f] - velocity[f] * twice[e];
-        term[c] = there * (turning + (square * d[c] - along * omega[c]));
+        let turning = velocity[f].multiply_subtract_from(twice[e], velocity[e] * twice[f]);
+        let outward = along.multiply_subtract_from(omega[c], square.multiply_add(d[c], turning));
+        term[c] = there * outward;
     }
     term
 }

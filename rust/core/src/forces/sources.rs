@@ -2,7 +2,7 @@
 //! [`post_newtonian`](super::post_newtonian).
 //!
 //! Canonical order: sources one after another as they are listed; what each gives is added to every other body, and then
-//! the reaction to the source, −Σ mᵢ aᵢ/M. Its sum takes the massive bodies by eights in order of index, each eight as
+//! the reaction to the source, Σ (−mᵢ/M) aᵢ, each with the factor of its pull first. Its sum takes the massive bodies by eights in order of index, each eight as
 //! ((0 + 1) + (2 + 3)) + ((4 + 5) + (6 + 7)), zero where there is none or the source itself, whatever the lanes are.
 //! Products and sums of that sum are not fused. In lanes over bodies nothing is read or written by single numbers: a
 //! vector that is read soon after waits long for them.
@@ -30,9 +30,31 @@ pub(super) trait Law: Send + 'static {
     /// Whether it looks at velocities.
     const VELOCITY: bool;
 
-    /// The acceleration that the source of that place in the list gives to a body; `strength` is the source's gravitational
-    /// parameter. Inlined, and without closures: it is compiled for each tier.
-    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> [S; 3];
+    /// What the source of that place in the list gives to a body; `strength` is the source's gravitational parameter.
+    /// Inlined, and without closures: it is compiled for each tier.
+    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> Pull<S>;
+}
+
+/// An acceleration, as a product: what waits for it need not wait for both. The factor is zero where r⁻³ is.
+#[derive(Debug)]
+pub(super) struct Pull<S> {
+    pub factor: S,
+    pub vector: [S; 3],
+}
+
+impl<S: Real> Pull<S> {
+    /// The product, without negative zeros: as one added to zero.
+    #[inline(always)]
+    fn acceleration(&self) -> [S; 3] {
+        let Self { factor, vector: [x, y, z] } = *self;
+        let zero = S::zero();
+        [factor.multiply_add(x, zero), factor.multiply_add(y, zero), factor.multiply_add(z, zero)]
+    }
+    /// A share of it, likewise.
+    #[inline(always)]
+    fn reaction(&self, share: S) -> [S; 3] {
+        Self { factor: share * self.factor, vector: self.vector }.acceleration()
+    }
 }
 
 /// Where a body is and how it moves, relative to a source.
@@ -66,13 +88,14 @@ struct Source {
     index: usize,
     /// Its row in a block and lane 0; or if packed, its row and lane.
     place: (usize, usize),
-    /// Its gravitational parameter, and 1/mass, in each block; one number in every lane if packed.
+    /// Its gravitational parameter in each block; in every lane if packed.
     strength: Vec<Lanes>,
-    inverse_mass: Vec<Lanes>,
+    /// −m/M of every body in its row and lane, zero of the source itself.
+    shares: Vec<Lanes>,
     /// If packed, where other bodies are, row after row.
     others: Vec<Bits>,
-    /// If packed, 1/mass in its lane and zero in the others.
-    alone: Lanes,
+    /// If packed, its lane alone, if it has mass.
+    itself: Bits,
     /// If packed, its lane, eight times.
     lane: [i64; WIDTH],
 }
@@ -86,7 +109,6 @@ pub(super) struct Kernel<L> {
     blocks: usize,
     active: usize,
     sources: Vec<Source>,
-    mass: Vec<Lanes>,
 }
 
 impl<L: Law> Kernel<L> {
@@ -107,29 +129,23 @@ impl<L: Law> Kernel<L> {
                 context.in_rows(1, |system, _| mass(system.mass[slot]))
             };
             let others = context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 });
-            let inverse = |mass: f64| if mass > 0.0 { 1.0 / mass } else { 0.0 };
-            let mut alone = Lanes::zero();
-            alone.0[place.1] = inverse(context.first().mass[slot]);
+            // Some ensemble members may have it without mass: there it does nothing.
+            let share = |own: f64, other: f64| if own > 0.0 { -other / own } else { 0.0 };
+            let shares = context.per_body(|system, other| {
+                if other == slot { 0.0 } else { share(system.mass[slot], system.mass[other]) }
+            });
+            let massive = u8::from(context.first().mass[slot] > 0.0);
             Source {
                 index,
                 place,
-                alone,
+                itself: Bits(massive << place.1),
                 lane: [place.1 as i64; WIDTH],
                 strength: of(&|mass| constant * mass),
-                // Some ensemble members may have it without mass: there it does nothing.
-                inverse_mass: of(&inverse),
+                shares,
                 others: others.iter().map(|row| Lanes::zero().less(*row)).collect(),
             }
         });
-        Self {
-            law,
-            shape,
-            packed,
-            blocks: context.blocks(),
-            active,
-            sources: sources.collect(),
-            mass: context.per_body(|system, slot| system.mass[slot]),
-        }
+        Self { law, shape, packed, blocks: context.blocks(), active, sources: sources.collect() }
     }
 }
 
@@ -148,14 +164,14 @@ fn difference<S: Real>(to: [S; 3], from: [S; 3]) -> [S; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// What a source gives to a row of bodies, at places and speeds: zero where nobody is or the source itself.
+/// What a source gives to a row of bodies, at places and speeds, and its reaction: zero where nobody is or the source itself.
 #[inline(always)]
 fn on_row<V: Vector8 + InverseCube, L: Law>(
     (kernel, source): (&Kernel<L>, &Source),
     row: usize,
     (place, speed): ([V; 3], [V; 3]),
     (own, own_speed): ([V; 3], [V; 3]),
-) -> [V; 3] {
+) -> [[V; 3]; 2] {
     let there = source.others[row];
     let mut d = difference(place, own);
     let mut velocity = [V::zero(); 3];
@@ -166,10 +182,8 @@ fn on_row<V: Vector8 + InverseCube, L: Law>(
     d[0] = V::select(there, d[0], V::one());
     let strength = V::load(source.strength[0]);
     let mut pull = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
-    for c in 0..3 {
-        pull[c] = V::select(there, pull[c], V::zero());
-    }
-    pull
+    pull.factor = V::select(there, pull.factor, V::zero());
+    [pull.acceleration(), pull.reaction(V::load(source.shares[row]))]
 }
 
 /// Bodies of one system: a row of them at a time, or `ONE` row alone. What is known when compiled stays in registers.
@@ -183,7 +197,7 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
     let rows = if ONE { 1 } else { kernel.shape.rows };
     let massive = if ONE { 1 } else { kernel.active.div_ceil(WIDTH) };
     let components = if PLANAR { 2 } else { 3 };
-    let (mass, q) = (&V::view(&kernel.mass)[..rows], &V::view(q)[..components * rows]);
+    let q = &V::view(q)[..components * rows];
     let v = &V::view(v)[..if L::VELOCITY { components * rows } else { 0 }];
     let a = &mut V::view_mut(a)[..components * rows];
     for source in &kernel.sources {
@@ -204,7 +218,7 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
                 own_speed = vector(v, row, rows, components);
             }
             let bodies = (vector(q, row, rows, components), own_speed);
-            let term = on_row((kernel, source), row, bodies, (place, speed));
+            let [term, reaction] = on_row((kernel, source), row, bodies, (place, speed));
             for c in 0..components {
                 if row == own {
                     beside[c] = term[c];
@@ -212,14 +226,12 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
                     a[c * rows + row] += term[c];
                 }
                 if row < massive {
-                    sum[c] += (mass[row] * term[c]).sum_in_every_lane();
+                    sum[c] += reaction[c].sum_in_every_lane();
                 }
             }
         }
-        let inverse_mass = V::load(source.alone);
-        let itself = V::zero().less(inverse_mass);
         for c in 0..components {
-            a[c * rows + own] += V::select(itself, -(sum[c] * inverse_mass), beside[c]);
+            a[c * rows + own] += V::select(source.itself, sum[c], beside[c]);
         }
     }
 }
@@ -228,7 +240,7 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
 #[inline(always)]
 fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) {
     let Shape { rows, components } = kernel.shape;
-    let (q, v, a, mass) = (V::view(q), V::view(v), V::view_mut(a), V::view(&kernel.mass));
+    let (q, v, a) = (V::view(q), V::view(v), V::view_mut(a));
     let bodies = rows / kernel.blocks.max(1);
     for block in 0..kernel.blocks {
         for source in &kernel.sources {
@@ -239,6 +251,7 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                 speed = vector(v, own, rows, components);
             }
             let strength = V::load(source.strength[block]);
+            let shares = V::view(&source.shares);
             let mut sum = [V::zero(); 3];
             for first in (0..bodies).step_by(WIDTH) {
                 let mut parts = [[V::zero(); WIDTH]; 3];
@@ -253,11 +266,12 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                         velocity = difference(vector(v, at, rows, components), speed);
                     }
                     let d = difference(vector(q, at, rows, components), place);
-                    let term = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
+                    let pull = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
+                    let (term, reaction) = (pull.acceleration(), pull.reaction(shares[at]));
                     for c in 0..components {
                         a[c * rows + at] += term[c];
                         if slot < kernel.active {
-                            parts[c][place_in_eight] = mass[at] * term[c];
+                            parts[c][place_in_eight] = reaction[c];
                         }
                     }
                 }
@@ -268,9 +282,8 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                     }
                 }
             }
-            let inverse_mass = V::load(source.inverse_mass[block]);
             for c in 0..components {
-                a[c * rows + own] += -(sum[c] * inverse_mass);
+                a[c * rows + own] += sum[c];
             }
         }
     }

@@ -2,11 +2,14 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::Turns;
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::scaled::Scaled;
@@ -57,11 +60,8 @@ struct UniformElectricField {
     charge: Vec<f64>,
 }
 
-impl ForceTerm for UniformElectricField {
-    fn declaration(&self) -> &'static ForceDeclaration {
-        &DECLARATION
-    }
-    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+impl UniformElectricField {
+    fn pushes(&self, context: &Context<'_>) -> Kernel {
         let ratio = context.per_body(|system, slot| {
             let charge = of_body(&context.own(self, system).charge, system.bodies[slot]);
             if charge == 0.0 { 0.0 } else { charge / system.mass[slot] }
@@ -69,7 +69,19 @@ impl ForceTerm for UniformElectricField {
         let field =
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).field[c], FORCE);
         let field = [0, 1, 2].map(|c| context.per_system(|system| field(system, c)));
-        Box::new(Kernel { shape: context.shape, field, ratio })
+        Kernel { shape: context.shape, field, ratio }
+    }
+}
+
+impl ForceTerm for UniformElectricField {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(self.pushes(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        beside(other, None, context, || self.pushes(context))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), None)
@@ -165,6 +177,22 @@ fn kernel<V: Vector8>(force: &Kernel, a: &mut [Lanes], first: bool) {
                 *a = if first { term } else { *a + term };
             }
         }
+    }
+}
+
+impl Beside for Kernel {
+    const VELOCITY: bool = false;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        _: [V; 3],
+        _: [V; 3],
+        _: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        let ratio = V::load(self.ratio[0]);
+        let [x, y, z] = &self.field;
+        [ratio * V::load(x[0]), ratio * V::load(y[0]), ratio * V::load(z[0])]
     }
 }
 

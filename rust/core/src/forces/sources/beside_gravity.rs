@@ -20,7 +20,6 @@ struct Taken {
 struct OneSource<L> {
     law: L,
     source: Source,
-    mass: Lanes,
     turns: Vec<Taken>,
 }
 
@@ -32,7 +31,6 @@ impl<L: Law> Kernel<L> {
         context: &Context<'_>,
     ) -> Option<Box<dyn Force<Lanes>>> {
         let source = self.sources.pop().filter(|_| self.sources.is_empty())?;
-        let mass = self.mass.first().copied()?;
         let make = || {
             let (n, own) = (context.active, source.place.1);
             let taken = |turn: usize| {
@@ -42,7 +40,7 @@ impl<L: Law> Kernel<L> {
                 Taken { lane, here: Bits(1 << ahead | 1 << behind) }
             };
             let turns = (1..=n / 2).map(taken).collect();
-            OneSource { law: self.law, source, mass, turns }
+            OneSource { law: self.law, source, turns }
         };
         beside(other, Some(0.0), context, make)
     }
@@ -67,24 +65,18 @@ impl<L: Law> Beside for OneSource<L> {
             }
         }
         let d = difference(place, own);
-        // Sums of one number and zeros.
         let mut inverse_cube = V::zero();
-        for k in (0..TURNS).rev() {
-            let taken = &self.turns[k];
-            let part = V::select(taken.here, found.weight[k].permute(&taken.lane), V::zero());
-            inverse_cube = if k + 1 == TURNS { part } else { part + inverse_cube };
+        for (taken, weight) in self.turns[..TURNS].iter().zip(&found.weight) {
+            inverse_cube = V::select(taken.here, weight.permute(&taken.lane), inverse_cube);
         }
         let velocity = difference(speed, own_speed);
         let relative = Relative { d, velocity, square: squared(d), inverse_cube };
-        let mut pull = self.law.pull(source.index, V::load(source.strength[0]), &relative);
-        let inverse_mass = V::load(source.alone);
-        let itself = V::zero().less(inverse_mass);
+        // Where the source itself is, or nobody, r⁻³ is zero.
+        let pull = self.law.pull(source.index, V::load(source.strength[0]), &relative);
+        let (mut term, reaction) = (pull.acceleration(), pull.reaction(V::load(source.shares[0])));
         for c in 0..3 {
-            let other = V::select(source.others[0], pull[c], V::zero());
-            let sum = (V::load(self.mass) * other).sum_in_every_lane();
-            // As where both are added to zeros.
-            pull[c] = V::select(itself, V::zero() - sum * inverse_mass, V::zero() + other);
+            term[c] = V::select(source.itself, reaction[c].sum_in_every_lane(), term[c]);
         }
-        pull
+        term
     }
 }

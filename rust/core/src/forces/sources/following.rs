@@ -156,7 +156,7 @@ fn pull<V: View<Lanes>, L: Law, const COMPONENTS: usize>(pull: Pull<'_, L>) {
         if L::VELOCITY {
             velocity = difference(speed, vector(velocities, slot, stride, COMPONENTS));
         }
-        let term = pull.of.law.pull(index, strength[i], &Relative::new(d, velocity));
+        let term = pull.of.law.pull(index, strength[i], &Relative::new(d, velocity)).acceleration();
         for c in 0..3 {
             sum[c] += term[c];
         }

@@ -129,12 +129,12 @@ impl<L: WrittenLaw> SourceSeries<L> {
                 for c in 0..*axes {
                     a[c * rows + row] += term[c];
                     if row < kernel.active.div_ceil(WIDTH) {
-                        sum[c] += Lanes::splat(sum_of_eight((kernel.mass[row] * term[c]).0));
+                        sum[c] += Lanes::splat(sum_of_eight((source.shares[row] * term[c]).0));
                     }
                 }
             }
             for c in 0..*axes {
-                a[c * rows + own] += -(sum[c] * source.alone);
+                a[c * rows + own] += Lanes::select(source.itself, sum[c], Lanes::zero());
             }
         }
     }
@@ -159,7 +159,7 @@ impl<L: WrittenLaw> SourceSeries<L> {
                         for c in 0..*axes {
                             a[c * rows + at] += term[c];
                             if slot < kernel.active {
-                                parts[c][slot - first] = kernel.mass[at] * term[c];
+                                parts[c][slot - first] = source.shares[at] * term[c];
                             }
                         }
                     }
@@ -170,7 +170,7 @@ impl<L: WrittenLaw> SourceSeries<L> {
                     }
                 }
                 for c in 0..*axes {
-                    a[c * rows + own] += -(sum[c] * source.inverse_mass[block]);
+                    a[c * rows + own] += sum[c];
                 }
             }
         }
