@@ -329,7 +329,7 @@ impl<'a> Watch<'a> {
             let shift = self.shift(event);
             let ends = [self.sights[event].value + shift, self.next[event].value + shift];
             let mut search = Search { watch: self, unit, event, span, ends, shift };
-            zeros.extend(search.zeros(step, ticker)?.into_iter().map(|theta| (theta, event)));
+            zeros.extend(search.zeros(step, ticker)?.into_iter().map(|(theta, _)| (theta, event)));
         }
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (theta, event) in zeros {

@@ -68,7 +68,26 @@ pub(super) fn gather(
     for of_copy in behind.chunk_by(|a, b| a.unit.copy == b.unit.copy) {
         bring_together(part, request, of_copy, columns, outcomes, reached, ticker)?;
     }
+    for report in reports.iter().filter(|report| report.ending == Ending::Stopped) {
+        if report.time == outcomes[part.member(report.unit.copy)].time {
+            put_where_it_stopped(part, report, reached);
+        }
+    }
     Ok(())
+}
+
+/// Puts the bodies that an event looks at where it stopped the motion, if it was looked for on steps of its own: on those of
+/// each body it might be to come yet.
+fn put_where_it_stopped(part: &Part<'_>, report: &Report, reached: &mut Reached) {
+    let Some(last) = report.found.last() else { return };
+    let Part { scene, plan, .. } = *part;
+    let looked_at = plan.events[last.which].bodies(&plan.groups, scene.particles, &plan.active);
+    for (&[position, velocity], &body) in last.states.iter().zip(&*report.unit.bodies) {
+        if looked_at.contains(&body) {
+            let particle = part.member(report.unit.copy) * scene.particles + body;
+            (reached.position[particle], reached.velocity[particle]) = (position, velocity);
+        }
+    }
 }
 
 /// Whether what became undefined did so by leaving the distances or the speeds at which a force is known: it is no number

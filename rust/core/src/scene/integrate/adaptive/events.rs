@@ -21,7 +21,9 @@ struct Inside<'r> {
     terms: Vec<(usize, Vec<[Lanes; 2]>)>,
     outcome: &'r Settled<Lanes>,
     ready: bool,
-    /// How often a state was asked for.
+    /// The fraction of the step that a state was asked for last.
+    last: Option<f64>,
+    /// How often one was.
     reads: u64,
 }
 
@@ -37,10 +39,13 @@ impl Inside<'_> {
 
 impl Interpolant for Inside<'_> {
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        if self.last == Some(theta) {
+            return Ok(self.between);
+        }
+        self.last = None;
         self.ready(ticker)?;
-        let theta = Lanes::splat(theta);
-        self.trial.at(self.outcome, self.system, self.state, theta, self.between, ticker)?;
-        self.reads += 1;
+        self.trial.at(self.outcome, self.system, self.state, Lanes::splat(theta), self.between, ticker)?;
+        (self.last, self.reads) = (Some(theta), self.reads + 1);
         Ok(self.between)
     }
 
@@ -111,12 +116,14 @@ impl Run<'_> {
             terms: Vec::new(),
             outcome,
             ready: dense.any(),
+            last: None,
             reads: 0,
         };
         let read = self.cost.read;
         for (lane, slot) in slots.iter_mut().enumerate().filter(|&(lane, _)| suspects.lane(lane)) {
             let Some(Slot { unit, watch: Some(watch), counts, .. }) = slot else { continue };
-            inside.reads = 0;
+            // Each pays for what it reads itself.
+            (inside.last, inside.reads) = (None, 0);
             watch.look(unit, span(lane), (&after, lane), &mut inside, ticker)?;
             counts.evaluations += read * inside.reads;
         }

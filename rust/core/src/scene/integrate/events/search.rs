@@ -21,6 +21,9 @@ const FEWEST: f64 = 128.0;
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
 
+/// How often the way beyond a zero is doubled, from a last digit on, until the function has its other sign.
+const DOUBLINGS: u32 = 16;
+
 /// Steps of the last kind, which find it to round-off if the motion is uniform.
 pub(super) const POLISHES: usize = 3;
 
@@ -56,12 +59,47 @@ pub(super) fn crossings(points: &[(f64, f64)]) -> Vec<Bracket> {
     pairs.filter(|[start, end]| crosses(start.1, end.1)).collect()
 }
 
+/// A zero: at what fraction of the step, and whether the function comes up to it from below.
+pub(super) type Zero = (f64, bool);
+
 impl Search<'_, '_> {
-    /// The zeros of the motion, as fractions of the step.
-    pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+    /// The zeros of the motion.
+    pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
         let mut zeros = self.all_zeros(step, ticker)?;
-        zeros.retain(|&theta| self.is_of_the_motion(theta));
+        zeros.retain(|&(theta, _)| self.is_of_the_motion(theta));
+        // Spheres that touch do not come to that once more; what the motion keeps is rounding everywhere.
+        if self.event < self.watch.events.len() && !self.watch.is_kept(self.event) {
+            for (theta, rises) in &mut zeros {
+                *theta = self.beyond((*theta, *rises), step, ticker)?;
+            }
+        }
         Ok(zeros)
+    }
+
+    /// A zero, or where beside it the very state that is told is on the far side, by more than the rounding that a start is
+    /// allowed: from the near side a run that goes on would find the zero once more.
+    fn beyond(
+        &mut self,
+        (zero, rises): Zero,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let mut theta = zero;
+        for doubled in 0..DOUBLINGS {
+            // What is at the end of the step is known.
+            if theta >= 1.0 {
+                return Ok(1.0);
+            }
+            let state = step.at(theta, ticker)?;
+            self.watch.bodies.read(state, &mut self.watch.inside);
+            let sight = self.sight_inside(theta, ticker)?;
+            let (value, rounding) = (sight.value, self.watch.event(self.event).0.rounding(&sight));
+            if value.abs() <= rounding || (value > 0.0) == rises {
+                return Ok(theta);
+            }
+            theta = zero + f64::from(1_u32 << doubled) * f64::EPSILON * zero;
+        }
+        Ok(zero)
     }
 
     /// Whether a zero is none that rounding and the errors of steps have made. Told at once, and from this step alone: a run
@@ -83,8 +121,8 @@ impl Search<'_, '_> {
         0.25 * (start + end) * steps > least && (start.max(end) > least || a_radian)
     }
 
-    /// All zeros, as fractions of the step.
-    fn all_zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+    /// All zeros.
+    fn all_zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
         // Upwards along the run backwards is downwards in time.
         let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
         let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
@@ -93,7 +131,7 @@ impl Search<'_, '_> {
                 return Ok(vec![]);
             }
             let ends = [(0.0, self.ends[0]), (1.0, self.ends[1])];
-            return Ok(vec![zero(ends, |theta| self.value_at(theta, step, ticker))?]);
+            return Ok(vec![(zero(ends, |theta| self.value_at(theta, step, ticker))?, self.ends[0] < 0.0)]);
         }
         if self.rests() {
             return Ok(Vec::new());
@@ -103,7 +141,7 @@ impl Search<'_, '_> {
         {
             let mut zeros = Vec::new();
             if counts(self.ends[0]) {
-                zeros.push(self.one_zero(theta, slope, step, ticker)?);
+                zeros.push((self.one_zero(theta, slope, step, ticker)?, self.ends[0] < 0.0));
             }
             return Ok(zeros);
         }
@@ -146,7 +184,7 @@ impl Search<'_, '_> {
             }
             let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
             let slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
-            return Ok(vec![self.one_zero(theta, slope, step, ticker)?]);
+            return Ok(vec![(self.one_zero(theta, slope, step, ticker)?, self.ends[0] < 0.0)]);
         }
         let mut zeros = Vec::new();
         let mut told = Vec::new();
@@ -173,7 +211,7 @@ impl Search<'_, '_> {
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Between two zeros to one side there is one to the other, which is not this near.
         zeros.dedup_by(|later, before| later.1 == before.1 && later.0 - before.0 <= ONE_ZERO);
-        Ok(zeros.into_iter().map(|(theta, _)| theta).collect())
+        Ok(zeros)
     }
 
     /// Whether what is looked at is where it is to rounding, and would be at the end of the run: what rests on a plane does not
