@@ -98,9 +98,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
             equally fast together, as symmetry asks [4]_; which are at one instant is told to 1e-12 of the radii.
             ``"stop"``: the run ends there, with `Status.STOPPED`. A row at the time of a collision has the state before
             it; steps begin anew after it. All bodies are on the same steps, no closed form is used while two may touch,
-            and ``out.collisions`` is the table of them. Spheres that overlap at the start are refused, and so are
-            collisions where no body has a radius. Those that bounce and come to rest on each other end the run, with
-            `Status.RESTING`.
+            and ``out.collisions`` is the table of them. Spheres that overlap at the start merge there, or are refused
+            with the other rules; collisions where no body has a radius are refused. Those that bounce and come to rest
+            on each other end the run, with `Status.RESTING`.
         restitution : float, optional
             The part of their speed along the line of centers with which spheres part that bounce, from 0 to 1, the
             default.

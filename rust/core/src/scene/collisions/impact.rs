@@ -89,6 +89,11 @@ impl Impact {
         CONTACT + 32.0 * f64::EPSILON * far / (self.radius[i] + self.radius[j])
     }
 
+    /// Whether two spheres are in each other, by more than rounding.
+    pub fn overlap(&self, (i, j): (usize, usize)) -> bool {
+        self.gap(i, j) < -self.contact(i, j)
+    }
+
     /// The pairs in contact.
     pub fn touching(&self) -> Vec<(usize, usize)> {
         let boxes: Vec<[[f64; 2]; 3]> = (self.position.iter().zip(&self.radius))

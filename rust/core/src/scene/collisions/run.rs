@@ -42,7 +42,7 @@ pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tic
 /// Runs a scene with collisions.
 ///
 /// # Errors
-/// As [`run`](crate::scene::run::run); spheres that overlap at the start.
+/// As [`run`](crate::scene::run::run); spheres that overlap at the start, unless they merge.
 pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Ticker<'_>) -> Result<Output> {
     let mut plan = plan(scene, request, rule, ticker)?;
     let copies = scene.copies;

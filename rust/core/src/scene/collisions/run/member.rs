@@ -86,7 +86,12 @@ impl Member {
             found: vec![0; request.events.len()],
         };
         let mut touching = member.bodies.touching();
-        if touching.iter().any(|&pair| member.bodies.approach(pair).is_some()) {
+        // Those that overlap from the start are refused unless they are to merge.
+        let meets = |&pair: &(usize, usize)| {
+            member.bodies.approach(pair).is_some()
+                || (rule == Collisions::Merge && member.bodies.overlap(pair))
+        };
+        if touching.iter().any(meets) {
             // The rows of the start are of before.
             let at_start = request.times.iter().take_while(|&&t| t == scene.t0).count();
             if at_start > 0 {
@@ -314,9 +319,8 @@ impl Member {
             }
             // A body that has grown may have reached others.
             let bodies = &self.bodies;
-            let touches = |&&(i, j): &&(usize, usize)| {
-                bodies.gap(i, j) < -bodies.contact(i, j) || bodies.approach((i, j)).is_some()
-            };
+            let touches =
+                |&&pair: &&(usize, usize)| bodies.overlap(pair) || bodies.approach(pair).is_some();
             next = bodies.touching().iter().find(touches).copied();
             if next.is_none() {
                 return true;

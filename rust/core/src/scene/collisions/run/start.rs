@@ -56,15 +56,17 @@ pub(super) fn whole_of(scene: &Scene, copy: usize, rule: Collisions) -> Option<S
     (leg.bodies.len() < scene.particles).then(|| leg.scene(scene, copy, &bodies, (scene.t0, scene.t0_rest)))
 }
 
-/// Refuses spheres that overlap at the start.
+/// Refuses spheres that overlap at the start, unless they merge, which they do there.
 ///
 /// # Errors
 /// By their indices, with how far they do.
 pub(super) fn check_overlaps(scene: &Scene, copy: usize, rule: Collisions) -> Result<()> {
+    if rule == Collisions::Merge {
+        return Ok(());
+    }
     let bodies = bodies_of(scene, copy, rule, 1.0);
-    let overlap = |&&(i, j): &&(usize, usize)| bodies.gap(i, j) < -bodies.contact(i, j);
     let touching = bodies.touching();
-    let Some(&(i, j)) = touching.iter().find(overlap) else { return Ok(()) };
+    let Some(&(i, j)) = touching.iter().find(|&&pair| bodies.overlap(pair)) else { return Ok(()) };
     let sum = bodies.radius[i] + bodies.radius[j];
     let apart = distance(bodies.position[i], bodies.position[j]);
     let whose = if scene.copies > 1 { format!(" of copy {copy}") } else { String::new() };
@@ -72,7 +74,7 @@ pub(super) fn check_overlaps(scene: &Scene, copy: usize, rule: Collisions) -> Re
         "radius",
         format!(
             "bodies {i} and {j}{whose} overlap by {} at the start: they are {} apart, and their radii add up to {}; \
-             move them apart, or make them smaller",
+             move them apart, make them smaller, or let them merge with collisions=\"merge\"",
             number(sum - apart),
             number(apart),
             number(sum)
