@@ -51,13 +51,17 @@ class _Judged:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """The stretch that is tried: what is asked, how much of it, and the reference there."""
+    """The stretch that is tried: what is asked, how much of it, and the reference there.
+
+    A step of the reference is between the two of `steps`: those of bodies that have steps of their own are counted
+    together.
+    """
 
     asked: dict[str, Any]
     fraction: float
     judged: tuple[_Judged, ...]
     seconds: float
-    step: float
+    steps: tuple[float, float]
     method: str
     uncertain: float
 
@@ -127,7 +131,8 @@ def trial_of(prepared: _core._Scene, asked: dict[str, Any], of: str) -> Trial:
         else:
             scale = _energy_scale(prepared, float(values[0]))
         judged.append(_Judged(column, bodies, scale or 1.0, values))
-    trial = Trial(asked, fraction, tuple(judged), seconds, span / steps, "dop853", np.inf)
+    between = span / steps, span / steps * len(massless)
+    trial = Trial(asked, fraction, tuple(judged), seconds, between, "dop853", np.inf)
     for method in _REFERENCES:
         referred = _referred(asked, fraction, trial.judged, method)
         if referred is not None and referred[1] < trial.uncertain:

@@ -12,6 +12,7 @@ Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration* 2nd ed., IX.8
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log2
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -231,10 +232,12 @@ def _option(trial: Trial, method: Method, accuracy: float, patience: float) -> O
         return None
     direction = 1.0 if float(trial.asked["times"][-1]) >= trial.asked["t0"] else -1.0
     # From a step that is too long on: of as many evaluations as a longest one of the reference.
+    shortest, longest = (16.0 * step * method.stages / 12.0 for step in trial.steps)
+    halvings = _HALVINGS + log2(longest / shortest)
     sizes = (
         [max(10.0 ** (-0.5 * k), TIGHTEST) for k in range(4, 28)]
         if method.adaptive
-        else [16.0 * direction * trial.step * method.stages / 12.0 * 2.0 ** (-0.5 * k) for k in range(2 * _HALVINGS)]
+        else [direction * longest * 2.0 ** (-0.5 * k) for k in range(round(2.0 * halvings))]
     )
     name = "rtol" if method.adaptive else "dt"
     # Every fourth until one holds, then those that were passed over, the longest first.
