@@ -1,4 +1,4 @@
-"""A word of warning after a run that resolved nothing."""
+"""A word of warning after a run that resolved nothing, or whose times are too coarse."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ import numpy as np
 from visviva.errors import AccuracyWarning
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from visviva import _core
@@ -67,6 +69,12 @@ _FAR = 1e3
 """So many times the span from the time zero, a phase of a thousand turns still has ten digits."""
 
 _PACKAGE = str(Path(__file__).parent)
+
+
+_TRIED = 17
+"""Times of the run at which forces are asked."""
+_BESIDE = (1, -1, 2, 3)
+"""Numbers beside them: phases at neighbors may round to the same number."""
 
 
 def callers_inside() -> int:
@@ -125,6 +133,34 @@ def steps_may_be_taken_again(steps: NDArray[np.int64], each: int) -> NDArray[np.
 def times_may_be_coarse(t0: float, end: float) -> bool:
     """Whether a run is so far from the time zero, beside its span, that what forces make of times is worth a look."""
     return max(abs(t0), abs(end)) > _FAR * abs(end - t0) > 0.0
+
+
+def warn_if_coarse(
+    told: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    span: tuple[float, float],
+    rtol: float,
+    what: str,
+    *,
+    alike: bool = True,
+) -> None:
+    """Warn where what is told of times (T,), in rows, changes by more than the tolerance from one to the next number.
+
+    What is not alike, in units of its own each, is measured by itself.
+    """
+    times = np.linspace(*span, _TRIED)
+    apart = float(np.spacing(np.abs(times).max()))
+    here, *beside = (told(times + off * apart) for off in (0, *_BESIDE))
+    with np.errstate(all="ignore"):
+        sizes = np.abs(here).max(axis=None if alike else 0)
+        shares = [np.abs(there - here) / (abs(off) * sizes) for off, there in zip(_BESIDE, beside, strict=True)]
+    change = float(np.nanmax(np.where(sizes > 0.0, shares, 0.0)))
+    if change > rtol:
+        message = (
+            f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next {what} "
+            f"by {change:.2g} of itself: no method errs by less; count time from the start of the run, "
+            "with t0 = 0, and put what has gone before into a phase"
+        )
+        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
 def _warn_of_step(result: dict[str, Any], asked: _core._Request, *, ensemble: bool) -> None:

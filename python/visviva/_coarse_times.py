@@ -6,7 +6,6 @@ of the package count from the start of the run; of an expression nobody knows wh
 
 from __future__ import annotations
 
-import warnings
 from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -14,24 +13,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._accuracy import callers_inside
+from visviva._accuracy import warn_if_coarse
 from visviva._expression_table import looks_at_time
-from visviva.errors import AccuracyWarning, InvalidInput
+from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from visviva.scene import Scene
 
-__all__ = ["warn_if_coarse", "warn_of_coarse_times"]
-
-_TRIED = 17
-"""Times of the run at which forces are asked."""
-_BESIDE = (1, -1, 2, 3)
-"""Numbers beside them: phases at neighbors may round to the same number."""
+__all__ = ["warn_of_coarse_times"]
 
 
 def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
@@ -42,34 +34,6 @@ def warn_of_coarse_times(scene: Scene, asked: _core._Request) -> None:
             continue
         with suppress(InvalidInput):  # where it is not known the run itself has said so
             warn_if_coarse(partial(_told, scene, index), span, asked["rtol"], f"forces[{index}] changes")
-
-
-def warn_if_coarse(
-    told: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    span: tuple[float, float],
-    rtol: float,
-    what: str,
-    *,
-    alike: bool = True,
-) -> None:
-    """Warn where what is told of times (T,), in rows, changes by more than the tolerance from one to the next number.
-
-    What is not alike, in units of its own each, is measured by itself.
-    """
-    times = np.linspace(*span, _TRIED)
-    apart = float(np.spacing(np.abs(times).max()))
-    here, *beside = (told(times + off * apart) for off in (0, *_BESIDE))
-    with np.errstate(all="ignore"):
-        sizes = np.abs(here).max(axis=None if alike else 0)
-        shares = [np.abs(there - here) / (abs(off) * sizes) for off, there in zip(_BESIDE, beside, strict=True)]
-    change = float(np.nanmax(np.where(sizes > 0.0, shares, 0.0)))
-    if change > rtol:
-        message = (
-            f"times near {times[-1]:g} are numbers {apart:.2g} apart, and from one to the next {what} "
-            f"by {change:.2g} of itself: no method errs by less; count time from the start of the run, "
-            "with t0 = 0, and put what has gone before into a phase"
-        )
-        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 
 def _told(scene: Scene, index: int, times: NDArray[np.float64]) -> NDArray[np.float64]:

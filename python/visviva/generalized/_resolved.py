@@ -17,10 +17,10 @@ from visviva._accuracy import (
     limit_of_energies,
     steps_may_be_taken_again,
     times_may_be_coarse,
+    warn_if_coarse,
     warn_of_energy,
     warn_of_step,
 )
-from visviva._coarse_times import warn_if_coarse
 from visviva.errors import Interrupted
 
 if TYPE_CHECKING:
