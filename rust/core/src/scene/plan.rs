@@ -135,6 +135,8 @@ pub struct Plan {
     pub turning: Turning,
     /// What the steps of a part of the run may be off, where they are chosen for bodies that torques turn.
     pub tolerance: Option<f64>,
+    /// What the steps that are chosen for them are held to, where nobody named the method.
+    pub held_to: Option<f64>,
     /// How many rigid bodies each copy has.
     pub rigid: usize,
     /// Of what make each of them is.
@@ -155,6 +157,8 @@ impl Plan {
         let with_step = with_method(scene, request);
         let in_parts = |with_step: &&Request| request.dt.is_none() && with_step.dt.is_some();
         let tolerance = with_step.as_ref().filter(in_parts).map(|request| request.rtol);
+        let chooses_all = |with_step: &&Request| with_step.dt.is_none() && request.atol.is_none();
+        let held_to = with_step.as_ref().filter(chooses_all).map(|request| turning::held_to(request.rtol));
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
@@ -275,6 +279,7 @@ impl Plan {
             ),
             turning,
             tolerance,
+            held_to,
             rigid: scene.rigid.as_ref().map_or(0, |bodies| bodies.count),
             makes: turning::makes(scene),
             copies: scene.copies,
@@ -298,7 +303,9 @@ impl Plan {
 
     /// The relative tolerance of a run: events do not cost the digits that a closed form has.
     pub fn rtol(&self, request: &Request) -> f64 {
-        if self.known.as_ref().is_some_and(|known| !known.integrates()) {
+        if let Some(rtol) = self.held_to {
+            rtol
+        } else if self.known.as_ref().is_some_and(|known| !known.integrates()) {
             request.rtol.min(AS_KNOWN)
         } else {
             request.rtol

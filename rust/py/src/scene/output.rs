@@ -236,7 +236,7 @@ fn status(ending: &Ending) -> i8 {
     match ending {
         Ending::Finished => 0,
         Ending::CloseEncounter { .. } => 1,
-        Ending::NoStep | Ending::NotFinite | Ending::Sticking { .. } => 2,
+        Ending::NoStep | Ending::NotFinite | Ending::Sticking { .. } | Ending::Endless => 2,
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
@@ -266,6 +266,12 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
                  and no step gets past that. It stays there while the other forces are weaker, which the force does not \
                  tell; end the run before (an event of the velocity), or write v·tanh(|v|/width)/|v| for v/|v|"
             ),
+            time,
+        }),
+        Ending::Endless => Some(Error::Convergence {
+            message: "the rigid bodies turn so fast that the run would take more than 1e9 steps; a larger rtol, a shorter \
+                      run, or a step dt or a method of your own may pass"
+                .to_owned(),
             time,
         }),
         Ending::NotFinite if chosen => Some(Error::Convergence {

@@ -32,6 +32,8 @@ pub enum Ending {
     OutsideDomain,
     /// The most steps allowed were taken.
     TooManySteps,
+    /// Nobody named the steps that turn bodies, and the end would take too many of them.
+    Endless,
     /// The caller asked to stop.
     Interrupted,
     /// An event ended the run, or spheres that touched.

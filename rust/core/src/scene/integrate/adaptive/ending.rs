@@ -11,6 +11,11 @@ use crate::scene::integrate::report::{Ending, Report};
 use crate::scene::unit::Unit;
 use std::collections::BTreeSet;
 
+/// Steps that nobody named are no shorter than this part of a run: who asks for more of them names the method, …
+const SHORTEST: f64 = 1e-9;
+/// … after so many, which no longer tell of the first.
+const MANY_STEPS: u64 = 64;
+
 impl<'a> Run<'a> {
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
     pub(super) fn settle(&mut self, lane: usize, outcome: &Settled<Lanes>, ticker: &mut Ticker<'_>) {
@@ -33,6 +38,10 @@ impl<'a> Run<'a> {
         } else {
             slot.counts.rejected += 1;
         }
+        let tried = slot.counts.steps + slot.counts.rejected;
+        let endless = self.job.plan.held_to.is_some()
+            && tried >= MANY_STEPS
+            && self.clock.h.0[lane].abs() < SHORTEST * end.abs();
         let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
         let ending = if outcome.finished.lane(lane) && self.part.last.lane(lane) {
             Ending::Finished
@@ -45,8 +54,10 @@ impl<'a> Run<'a> {
                 Forces::Own(_) | Forces::Turning(_) => Vec::new(),
             };
             stuck::why(self.job, &slot.unit, &self.state, (lane, elapsed), &massive)
-        } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
+        } else if tried >= self.job.max_steps {
             Ending::TooManySteps
+        } else if endless {
+            Ending::Endless
         } else if stopped {
             // The events know better where.
             Ending::Stopped
