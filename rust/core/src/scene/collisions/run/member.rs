@@ -319,8 +319,7 @@ impl Member {
             }
             // A body that has grown may have reached others.
             let bodies = &self.bodies;
-            let touches =
-                |&&pair: &&(usize, usize)| bodies.overlap(pair) || bodies.approach(pair).is_some();
+            let touches = |&&pair: &&(usize, usize)| bodies.overlap(pair) || bodies.approach(pair).is_some();
             next = bodies.touching().iter().find(touches).copied();
             if next.is_none() {
                 return true;
