@@ -3,6 +3,7 @@
 mod begun;
 mod derived;
 mod events;
+mod half_steps;
 mod patterns;
 mod reached;
 pub(super) mod resolved;

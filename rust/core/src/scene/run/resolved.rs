@@ -8,7 +8,7 @@ use super::super::Scene;
 use super::super::integrate::Ending;
 use super::super::plan::Plan;
 use super::super::request::Request;
-use super::{Outcome, Part, Reached};
+use super::{Outcome, Part, Reached, half_steps};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
@@ -32,6 +32,9 @@ const WORTH_A_LOOK: f64 = 1e-2;
 /// … and so many times what a last digit makes of the energy is that.
 const ROUNDINGS: f64 = 8.0;
 
+/// Forces that may change the energy by anything seldom change it by more than this part of what there was.
+const ALL_THERE_WAS: f64 = 1.0;
+
 /// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
 const FASTER: f64 = 3.0;
 
@@ -47,7 +50,7 @@ pub(super) fn look(
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     let (scene, plan) = (part.scene, part.plan);
-    if plan.energy == Energy::Unknown || plan.active.len() > MOST || request.times.is_empty() {
+    if plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
     let span = (request.times[request.times.len() - 1] - scene.t0).abs();
@@ -59,7 +62,8 @@ pub(super) fn look(
         let many = outcome.counts.evaluations >= MANY_EVALUATIONS;
         // Who asks for energies pays for such sums.
         let cheap = pairs <= FEW_PAIRS || many || request.records("energy");
-        if outcome.ending != Ending::Finished || !cheap {
+        let told = plan.energy != Energy::Unknown || half_steps::pays(part, outcome.counts.evaluations);
+        if outcome.ending != Ending::Finished || !cheap || !told {
             continue;
         }
         let places = member * scene.particles..(member + 1) * scene.particles;
@@ -90,10 +94,25 @@ pub(super) fn look(
                     Energy::Driven => (change.abs() - given_by_drives(scene, copy, span, whole)).max(0.0),
                     // Backward in time what is taken comes back.
                     Energy::NeverGrows => (plan.direction * change).max(0.0),
-                    Energy::Constant | Energy::Unknown => change.abs(),
+                    Energy::Constant => change.abs(),
+                    Energy::Unknown => 0.0,
                 }
             };
             outcome.energy_error = error(whole);
+            let begun_with = kinetic.plus(size);
+            if matches!(plan.energy, Energy::Driven | Energy::Unknown)
+                && !(outcome.energy_error > WORTH_A_LOOK)
+                && begun_with.to_f64() >= LEAST
+                && change.over(begun_with).to_f64().abs() > ALL_THERE_WAS
+                && half_steps::pays(part, outcome.counts.evaluations)
+            {
+                let Ok(half) = half_steps::energy_at_end(part, request, ticker) else { return Ok(()) };
+                if let Some(half) = half {
+                    let off = half.plus(kinetic_end.plus(potential_end).times(-1.0));
+                    outcome.energy_error = off.over(larger(kinetic, kinetic_end).plus(size)).to_f64().abs();
+                }
+                continue;
+            }
             let begins_with_nothing = kinetic.plus(absolute(potential)).value().high() == 0.0;
             if begins_with_nothing && outcome.energy_error > 0.0 && outcome.counts.steps > 0 {
                 let step = plan.dt.map_or(plan.span / outcome.counts.steps as f64, f64::abs);
