@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -141,7 +142,13 @@ def methods() -> list[Method]:
 
 def _records(*, rigid: bool) -> list[Method]:
     """The methods of scenes, or those that step rigid bodies."""
-    return _Listed(Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid))
+    return _Listed(_registered(rigid))
+
+
+@cache
+def _registered(rigid: bool) -> tuple[Method, ...]:
+    """The same, which every run with a named method looks through."""
+    return tuple(Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid))
 
 
 def __dir__() -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from visviva import _core
@@ -130,9 +131,15 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
     return method
 
 
+@cache
+def _asked_of_energies() -> dict[str, str | None]:
+    """What methods ask of the energies of a system, by their names."""
+    return {row["name"]: row["asks"] for row in _core.methods()}
+
+
 def _check_splitting(method: str, system: States) -> None:
     """Refuse kicks and drifts where they make no method."""
-    [asks] = [row["asks"] for row in _core.methods() if row["name"] == method]
+    asks = _asked_of_energies()[method]
     if asks is None:
         return
     found = system._structure
