@@ -38,6 +38,8 @@ const LOOSEST: f64 = 1e-3;
 const SHORTER: f64 = 1.0 / 8.0;
 /// Rates that are the same but for rounding differ by less, relative to how far they move a number.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// So many times what a last digit of all numbers makes of a rate is rounding.
+const ROUNDINGS: f64 = 8.0;
 /// So many tolerances the orders that a series leaves out may count in its second derivative, at the end of a step.
 const NEXT_ORDERS: f64 = 300.0;
 /// The first unit of numbers that are measured by themselves, as a part of the whole time.
@@ -165,12 +167,38 @@ impl<S: Controlled> TaylorStep<S> {
             system.rate(t, next.all().0, rates, ticker)?;
             &q[..]
         };
-        let missed = Missed { rates, blocks, highest: *order, times: [h, unit], second_order };
+        let (highest, times) = (*order, [&*h, &*unit]);
         // Rounding leads nobody astray.
         if norm.blocks.is_empty() {
-            let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
-            return Ok(S::pass(OwnMissed { missed, blocks, tolerance, least, most }));
+            let mut rounding = vec![S::zero(); rates.len()];
+            let astray = |rates: &mut [S], rounding: &[S]| {
+                let missed = Missed { rates, blocks, highest, times, second_order };
+                let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
+                S::pass(OwnMissed { missed, blocks, rounding, tolerance, least, most })
+            };
+            let seems = astray(rates, &rounding);
+            if !seems.any() {
+                return Ok(seems);
+            }
+            // Of a difference of places that hardly differ from where they were, it may be all.
+            let nudged = |numbers: &[S]| -> Vec<S> {
+                let digit = |number: usize| {
+                    S::splat(if number.is_multiple_of(2) { f64::EPSILON } else { -f64::EPSILON })
+                };
+                numbers.iter().enumerate().map(|(number, &x)| digit(number).multiply_add(x, x)).collect()
+            };
+            if second_order {
+                let (q, v) = (nudged(next.q()), nudged(next.v()));
+                system.acceleration(t, &q, &v, &mut rounding, ticker)?;
+            } else {
+                system.rate(t, &nudged(next.all().0), &mut rounding, ticker)?;
+            }
+            for (rounding, rate) in rounding.iter_mut().zip(rates.iter()) {
+                *rounding = S::splat(ROUNDINGS) * (*rounding - *rate).abs();
+            }
+            return Ok(astray(rates, &rounding));
         }
+        let missed = Missed { rates, blocks, highest, times, second_order };
         S::pass(missed);
         let x = *h / *unit;
         let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
