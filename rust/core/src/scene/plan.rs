@@ -131,6 +131,8 @@ pub struct Plan {
     /// The kind of the forces of each copy, if copies have their own: each kind is planned by itself, and this plan is that
     /// of the first.
     pub kinds: Vec<usize>,
+    /// Of each force that joins listed bodies, which these are, in order.
+    joined: Vec<Option<Box<[usize]>>>,
     /// How rigid bodies turn.
     pub turning: Turning,
     /// What the steps of a part of the run may be off, where they are chosen for bodies that torques turn.
@@ -237,6 +239,7 @@ impl Plan {
         let chooses = dt.is_none() && request.max_step.is_none() && !turning.steps();
         let longest_untold = Some(whole * LARGEST_PART)
             .filter(|step| chooses && *step > 0.0 && forces.iter().any(|force| force.may_change_anywhere()));
+        let joined = forces.iter().map(|force| coupling::joined_by(&**force)).collect();
         let mut plan = Self {
             method,
             dt,
@@ -277,6 +280,7 @@ impl Plan {
                 scene,
                 transformed.is_some() || matches!(method.scheme, Scheme::Taylor(_)),
             ),
+            joined,
             turning,
             tolerance,
             held_to,
@@ -320,6 +324,12 @@ impl Plan {
     /// The units for a copy by itself.
     pub fn units_of(&self, scene: &Scene, copy: usize) -> Units {
         units(scene, copy, self.frame_of(copy), &self.groups, self.span)
+    }
+
+    /// Whether a force acts on some of these bodies: not if it joins others.
+    pub fn acts_on(&self, force: usize, bodies: &[usize]) -> bool {
+        let joined = self.joined.get(force).and_then(Option::as_ref);
+        joined.is_none_or(|joined| !bodies.is_sorted() || coupling::meet(joined, bodies))
     }
 
     /// The forces that do something in a copy, in order.

@@ -2,7 +2,7 @@
 
 use crate::forces::ForceTerm;
 use crate::forces::term::Coupling;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// How the bodies of a copy hang together.
@@ -57,6 +57,19 @@ impl Groups {
             Self::Listed(groups) => groups.iter().map(|group| group.len()).max().unwrap_or(1),
         }
     }
+}
+
+/// The bodies that a force joins by listed pairs, in order of index; none of a force that acts on any.
+pub(super) fn joined_by(force: &dyn ForceTerm) -> Option<Box<[usize]>> {
+    let Coupling::Listed(pairs) = force.coupling() else { return None };
+    let bodies: BTreeSet<usize> = pairs.into_iter().flat_map(|(i, j)| [i, j]).collect();
+    Some(bodies.into_iter().collect())
+}
+
+/// Whether two lists of bodies in order have one in common.
+pub(super) fn meet(one: &[usize], other: &[usize]) -> bool {
+    let (few, many) = if one.len() < other.len() { (one, other) } else { (other, one) };
+    few.iter().any(|body| many.binary_search(body).is_ok())
 }
 
 /// The body by which the group of a body is known; the way to it is shortened.

@@ -93,6 +93,9 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
     }
     let taken = 2 * kernels.len();
     for (term, force) in forces.iter().enumerate().skip(taken) {
+        if !units.iter().any(|unit| plan.acts_on(term, &unit.unit.bodies)) {
+            continue;
+        }
         context.term = term;
         kernels.push(force.kernel(&context));
     }
