@@ -7,6 +7,7 @@ use super::{CONTACT, Collision};
 use crate::numerics::elementary::cbrt;
 use crate::numerics::points::distance;
 use crate::scene::run::Reached;
+use std::collections::BTreeSet;
 
 /// Spheres at one time, and what is left of them.
 #[derive(Clone, Debug)]
@@ -118,6 +119,28 @@ impl Impact {
         );
         pairs.sort_unstable();
         pairs
+    }
+
+    /// Whether two spheres that touch become one if they may: they approach, or are in each other.
+    fn meet(&self, pair: (usize, usize)) -> bool {
+        self.overlap(pair) || self.approach(pair).is_some()
+    }
+
+    /// The pairs that become one if they may.
+    pub fn meeting_pairs(&self) -> BTreeSet<(usize, usize)> {
+        self.touching().into_iter().filter(|&pair| self.meet(pair)).collect()
+    }
+
+    /// Brings such pairs up to date after two of their bodies have become one: no others have changed.
+    pub fn update(&self, pairs: &mut BTreeSet<(usize, usize)>, (i, j): (usize, usize)) {
+        pairs.retain(|&(a, b)| a != i && a != j && b != i && b != j);
+        let left = self.host[i];
+        let with_left = (0..self.mass.len()).map(|other| (left.min(other), left.max(other)));
+        pairs.extend(with_left.filter(|&(a, b)| {
+            let spheres = a != b && (self.radius[a] > 0.0 || self.radius[b] > 0.0);
+            let touch = spheres && self.is_whole((a, b)) && self.gap(a, b) <= self.contact(a, b);
+            touch && self.meet((a, b))
+        }));
     }
 
     /// How fast two spheres approach, if they do by more than rounding.

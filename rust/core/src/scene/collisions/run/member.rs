@@ -87,11 +87,8 @@ impl Member {
         };
         let mut touching = member.bodies.touching();
         // Those that overlap from the start are refused unless they are to merge.
-        let meets = |&pair: &(usize, usize)| {
-            member.bodies.approach(pair).is_some()
-                || (rule == Collisions::Merge && member.bodies.overlap(pair))
-        };
-        if touching.iter().any(meets) {
+        let merges = rule == Collisions::Merge && touching.iter().any(|&pair| member.bodies.overlap(pair));
+        if merges || touching.iter().any(|&pair| member.bodies.approach(pair).is_some()) {
             // The rows of the start are of before.
             let at_start = request.times.iter().take_while(|&&t| t == scene.t0).count();
             if at_start > 0 {
@@ -311,16 +308,18 @@ impl Member {
 
     fn merge(&mut self, pair: Option<(usize, usize)>) -> bool {
         let t = self.outcome.time;
+        let mut meeting = None;
         let mut next = pair;
         loop {
             if let Some(pair) = next {
                 let collision = self.bodies.merge(pair, t);
                 self.put(collision);
+                if let Some(meeting) = &mut meeting {
+                    self.bodies.update(meeting, pair);
+                }
             }
             // A body that has grown may have reached others.
-            let bodies = &self.bodies;
-            let touches = |&&pair: &&(usize, usize)| bodies.overlap(pair) || bodies.approach(pair).is_some();
-            next = bodies.touching().iter().find(touches).copied();
+            next = meeting.get_or_insert_with(|| self.bodies.meeting_pairs()).first().copied();
             if next.is_none() {
                 return true;
             }
