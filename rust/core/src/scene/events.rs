@@ -196,6 +196,17 @@ impl Event {
             }
     }
 
+    /// The same of a state that is told, in numbers: of bodies so far from the origin of the scene, and so fast.
+    pub fn rounding_as_told(&self, sight: &Sight, [far, fast]: [f64; 2]) -> f64 {
+        let size = |x: [f64; 3]| dot(x, x).sqrt();
+        let of_places = match &self.what {
+            What::Distance { length, .. } => far / length * size(sight.distance),
+            What::Apsis { .. } => far * size(sight.velocity) + fast * size(sight.distance),
+            _ => 0.0,
+        };
+        self.rounding(sight) + 8.0 * f64::EPSILON * of_places
+    }
+
     /// How far its value must come from zero between two zeros for the second to be one of the motion, places and
     /// velocities being known so well. On a circle there are no apsides, but rounding and the errors of steps take the
     /// value from one sign to the other all the time. Of events of another kind any zero is one.

@@ -7,6 +7,7 @@
 
 mod abreast;
 mod along;
+mod beyond;
 mod bodies;
 mod clear;
 mod contacts;
@@ -28,7 +29,7 @@ pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use contacts::{Contacts, Pair};
-use search::Search;
+use search::{Search, Zero};
 
 /// A zero that was found.
 #[derive(Clone, Debug)]
@@ -185,6 +186,8 @@ impl<'a> Watch<'a> {
         watch.bodies.read(state, &mut watch.before);
         watch.contacts = spheres
             .map(|(index, spheres)| Contacts::new(index, spheres, &watch.bodies.indices, &watch.before));
+        let copy = unit.unit.copy;
+        let told = |body: usize| [scene.positions(copy)[body], scene.velocities(copy)[body]];
         for event in 0..watch.events.len() {
             let mut sight = watch.sight(unit, event, (&watch.before, job.begun()), ticker)?;
             let least = watch.event(event).0.least_swing(&sight, &watch.known);
@@ -192,7 +195,8 @@ impl<'a> Watch<'a> {
                 watch.last[event] = job.begun();
             }
             // What starts at zero has not come there.
-            if sight.value.abs() <= watch.event(event).0.rounding(&sight) {
+            let seen = (&sight, &watch.before[..], job.begun());
+            if sight.value.abs() <= watch.rounding_as_told(unit, event, seen, &told, ticker)? {
                 sight.value = 0.0;
             }
             watch.sights[event] = sight;
@@ -324,15 +328,15 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.ask(step, ticker)?;
-        let mut zeros: Vec<(f64, usize)> = Vec::new();
+        let mut zeros: Vec<(Zero, usize)> = Vec::new();
         for event in core::mem::take(&mut self.suspects) {
             let shift = self.shift(event);
             let ends = [self.sights[event].value + shift, self.next[event].value + shift];
             let mut search = Search { watch: self, unit, event, span, ends, shift };
-            zeros.extend(search.zeros(step, ticker)?.into_iter().map(|(theta, _)| (theta, event)));
+            zeros.extend(search.zeros(step, ticker)?.into_iter().map(|zero| (zero, event)));
         }
-        zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (theta, event) in zeros {
+        zeros.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0));
+        for (place, &((theta, _), event)) in zeros.iter().enumerate() {
             // Of the state nothing is lost to the rounding of the time.
             let elapsed = scale(span.at(theta), self.job.plan.units.time);
             let (t, t_rest) = self.job.scene.time_after(elapsed);
@@ -347,22 +351,27 @@ impl<'a> Watch<'a> {
                 break;
             }
             let turned = unit.turned(self.job.scene, state, lane);
+            let mut found = Found { which: usize::MAX, t, t_rest, states, turned, spheres: None };
             let Some(&(which, _)) = self.events.get(event) else {
-                let spheres = match self.event(event).0.what {
+                found.spheres = match self.event(event).0.what {
                     What::Distance { bodies, .. } => Some(bodies),
                     _ => None,
                 };
-                let which = self.contacts.as_ref().map_or(usize::MAX, |contacts| contacts.which);
-                self.found.push(Found { which, t, t_rest, states, turned, spheres });
+                found.which = self.contacts.as_ref().map_or(usize::MAX, |contacts| contacts.which);
+                self.found.push(found);
                 self.stopped = true;
                 break;
             };
-            self.found.push(Found { which, t, t_rest, states, turned, spheres: None });
+            found.which = which;
             self.counts[event] += 1;
             if self.event(event).0.last.is_some_and(|last| self.counts[event] >= last) {
+                self.bodies.read(state, &mut self.inside);
+                self.tell_what_is_over(unit, &zeros[place + 1..], (&found, span.at(theta)), ticker)?;
+                self.found.push(found);
                 self.stopped = true;
                 break;
             }
+            self.found.push(found);
         }
         if let (Some(contacts), false) = (&mut self.contacts, self.pairs.is_empty()) {
             contacts.go_on(&self.after);

@@ -21,9 +21,6 @@ const FEWEST: f64 = 128.0;
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
 
-/// How often the way beyond a zero is doubled, from a last digit on, until the function has its other sign.
-const DOUBLINGS: u32 = 16;
-
 /// Steps of the last kind, which find it to round-off if the motion is uniform.
 pub(super) const POLISHES: usize = 3;
 
@@ -74,32 +71,6 @@ impl Search<'_, '_> {
             }
         }
         Ok(zeros)
-    }
-
-    /// A zero, or where beside it the very state that is told is on the far side, by more than the rounding that a start is
-    /// allowed: from the near side a run that goes on would find the zero once more.
-    fn beyond(
-        &mut self,
-        (zero, rises): Zero,
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<f64> {
-        let mut theta = zero;
-        for doubled in 0..DOUBLINGS {
-            // What is at the end of the step is known.
-            if theta >= 1.0 {
-                return Ok(1.0);
-            }
-            let state = step.at(theta, ticker)?;
-            self.watch.bodies.read(state, &mut self.watch.inside);
-            let sight = self.sight_inside(theta, ticker)?;
-            let (value, rounding) = (sight.value, self.watch.event(self.event).0.rounding(&sight));
-            if value.abs() <= rounding || (value > 0.0) == rises {
-                return Ok(theta);
-            }
-            theta = zero + f64::from(1_u32 << doubled) * f64::EPSILON * zero;
-        }
-        Ok(zero)
     }
 
     /// Whether a zero is none that rounding and the errors of steps have made. Told at once, and from this step alone: a run
@@ -403,7 +374,7 @@ impl Search<'_, '_> {
         self.sight_inside(theta, ticker)
     }
 
-    fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
+    pub(super) fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
         let bodies = (&self.watch.inside[..], self.span.at(theta));
         let mut sight = self.watch.sight(self.unit, self.event, bodies, ticker)?;
         sight.value += self.shift;

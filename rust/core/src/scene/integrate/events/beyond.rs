@@ -1,0 +1,113 @@
+//! States that are told at zeros: on the far side of them, so that a run that goes on from there does not find them again.
+//!
+//! The one idea: a start that is zero for all that its numbers tell is zero ([`Event::rounding_as_told`]); so a state in
+//! which a run ends has behind it what it is beyond, or as good as at.
+//!
+//! [`Event::rounding_as_told`]: crate::scene::events::Event::rounding_as_told
+
+use super::search::{Search, Zero};
+use super::{Found, Interpolant, Watch};
+use crate::error::Result;
+use crate::numerics::power_of_two::power_of_two;
+use crate::parallel::Ticker;
+use crate::scene::events::{Moving, Sight, What};
+use crate::scene::unit::Prepared;
+
+/// How often the way beyond a zero is doubled, from a last digit on, until the function has its other sign.
+const DOUBLINGS: i32 = 36;
+
+/// So many times what a last digit of all numbers makes of an energy is rounding.
+const ROUNDINGS: f64 = 8.0;
+
+/// Position and velocity of bodies of the scene, as they are told.
+pub(super) type Told<'t> = dyn Fn(usize) -> [[f64; 3]; 2] + 't;
+
+impl Search<'_, '_> {
+    /// A zero, or where beside it the very state that is told is on the far side, by more than the rounding that a start is
+    /// allowed: from the near side a run that goes on would find the zero once more.
+    pub(super) fn beyond(
+        &mut self,
+        (zero, rises): Zero,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let mut theta = zero;
+        for doubled in 0..DOUBLINGS {
+            // What is at the end of the step is known.
+            if theta >= 1.0 {
+                return Ok(1.0);
+            }
+            let state = step.at(theta, ticker)?;
+            self.watch.bodies.read(state, &mut self.watch.inside);
+            let sight = self.sight_inside(theta, ticker)?;
+            let (value, rounding) = (sight.value, self.watch.event(self.event).0.rounding(&sight));
+            if value.abs() <= rounding || (value > 0.0) == rises {
+                return Ok(theta);
+            }
+            theta = zero * (1.0 + power_of_two(doubled) * f64::EPSILON);
+        }
+        Ok(zero)
+    }
+}
+
+impl Watch<'_> {
+    /// Tells of other events that would have come on the same step, whose zero the state in which the run ends, after that
+    /// time, has behind it for all that its numbers tell: a run that goes on from there does not come to it.
+    pub(super) fn tell_what_is_over(
+        &mut self,
+        unit: &Prepared,
+        later: &[(Zero, usize)],
+        (end, elapsed): (&Found, f64),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let told = |body: usize| {
+            let slot = unit.unit.bodies.iter().position(|other| *other == body);
+            slot.map_or([[0.0; 3]; 2], |slot| end.states[slot])
+        };
+        for &((_, rises), event) in later {
+            let Some(&(which, _)) = self.events.get(event).filter(|(which, _)| *which != end.which) else {
+                continue;
+            };
+            let sight = self.sight(unit, event, (&self.inside, elapsed), ticker)?;
+            let zero = self.rounding_as_told(unit, event, (&sight, &self.inside, elapsed), &told, ticker)?;
+            if sight.value.abs() <= zero || (sight.value > 0.0) == rises {
+                self.counts[event] += 1;
+                self.found.push(Found { which, ..end.clone() });
+            }
+        }
+        Ok(())
+    }
+    /// Below what the value of an event is zero for all that the numbers of a state tell: these bodies, after that time, of
+    /// which it sees that.
+    pub(super) fn rounding_as_told(
+        &self,
+        unit: &Prepared,
+        event: usize,
+        (sight, bodies, elapsed): (&Sight, &[Moving], f64),
+        told: &Told<'_>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let (own, places) = self.event(event);
+        let of = |place: usize| told(self.bodies.indices[place]);
+        if !matches!(own.what, What::Energy(_)) || self.is_kept(event) {
+            let far = places.iter().map(|&place| of(place)).fold([0.0; 2], farther);
+            return Ok(own.rounding_as_told(sight, far));
+        }
+        let mut nudged = bodies.to_vec();
+        for &place in places {
+            let digits = of(place).map(|vector| vector.map(|x| f64::EPSILON * x.abs()));
+            for c in 0..3 {
+                let sign = if (place + c).is_multiple_of(2) { 1.0 } else { -1.0 };
+                nudged[place].position_rest[c] += sign * digits[0][c];
+                nudged[place].velocity_rest[c] += sign * digits[1][c];
+            }
+        }
+        let beside = self.sight(unit, event, (&nudged, elapsed), ticker)?;
+        Ok(own.rounding(sight).max(ROUNDINGS * (beside.value - sight.value).abs()))
+    }
+}
+
+/// The largest coordinate and the largest component of a velocity, with those of one more body.
+fn farther(most: [f64; 2], state: [[f64; 3]; 2]) -> [f64; 2] {
+    core::array::from_fn(|kind| state[kind].iter().fold(most[kind], |most, x| most.max(x.abs())))
+}
