@@ -75,6 +75,8 @@ _TRIED = 17
 """Times of the run at which forces are asked."""
 _BESIDE = (1, -1, 2, 3)
 """Numbers beside them: phases at neighbors may round to the same number."""
+_ROUNDINGS = 8.0
+"""So many times what a rounding of the state changes is rounding."""
 
 
 def callers_inside() -> int:
@@ -140,19 +142,22 @@ def warn_if_coarse(
     span: tuple[float, float],
     rtol: float,
     what: str,
-    *,
-    alike: bool = True,
+    nudged: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None,
 ) -> None:
     """Warn where what is told of times (T,), in rows, changes by more than the tolerance from one to the next number.
 
-    What is not alike, in units of its own each, is measured by itself.
+    With what is told where states are a rounding off (`nudged`), each number is measured by itself, and what such a
+    rounding changes is none of the times.
     """
     times = np.linspace(*span, _TRIED)
     apart = float(np.spacing(np.abs(times).max()))
     here, *beside = (told(times + off * apart) for off in (0, *_BESIDE))
     with np.errstate(all="ignore"):
-        sizes = np.abs(here).max(axis=None if alike else 0)
-        shares = [np.abs(there - here) / (abs(off) * sizes) for off, there in zip(_BESIDE, beside, strict=True)]
+        sizes = np.abs(here).max(axis=None if nudged is None else 0)
+        rounding = 0.0 if nudged is None else _ROUNDINGS * np.abs(nudged(times) - here).max(axis=0)
+        shares = [
+            (np.abs(there - here) - rounding) / (abs(off) * sizes) for off, there in zip(_BESIDE, beside, strict=True)
+        ]
     change = float(np.nanmax(np.where(sizes > 0.0, shares, 0.0)))
     if change > rtol:
         message = (

@@ -70,3 +70,29 @@ def test_what_has_no_time_in_it_is_as_exact_there() -> None:
     assert heard(lambda: still.run(1.7e9 + 1.0)) == []
     # Nor a drive over most of the time since zero.
     assert heard(lambda: driven(1.0, 1e4).run(3e4, method="dop853", rtol=1e-9)) == []
+
+
+def test_a_rate_that_is_zero_but_for_rounding_is_none() -> None:
+    """An isotropic trap in axes that turn: nothing depends on the time, and of a rate of 1e-17 all is rounding."""
+
+    def turning(q, v, t, w):  # type: ignore[no-untyped-def]
+        c, s = np.cos(w * t), np.sin(w * t)
+        a, b = q[0] * c + q[1] * s, q[1] * c - q[0] * s
+        return (v[0] ** 2 + v[1] ** 2) / 2 - (a**2 + b**2) / 2
+
+    for w, t0 in ((1e-3, 1e4), (1.0, 1e6), (0.3, -1e5)):
+        trap = vv.Lagrangian(turning, ["x", "y"], parameters={"w": w}, position=[1.0, 0.0], t0=t0)
+        assert heard(lambda trap=trap, t0=t0: trap.run(t0 + 1.0)) == []
+
+
+def test_a_drive_that_acts_away_from_the_start_is_seen_at_the_end() -> None:
+    """x² cos(50 t) does nothing at x = 0, where the body begins, and everything where it has come to."""
+    away = vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 - q[0] ** 2 * (1 + np.cos(1.3 * t)) / 2,
+        ["x"],
+        position=[0.0],
+        velocity=[1.0],
+        t0=1.7e9,
+    )
+    assert len(heard(lambda: away.run(1.7e9 + 1.0))) == 1
+    assert len(heard(lambda: away.ensemble(velocity=[[1.0], [2.0]]).run(1.7e9 + 1.0))) == 1

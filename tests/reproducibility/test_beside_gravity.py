@@ -10,13 +10,15 @@ FORCES = {
     "J2 and J4": lambda n, source: vv.Oblate(source, 1.0, 0.02, 0.3, [0.0, 0.0, 2.0], -0.01),
     "two sources": lambda n, source: vv.Oblate([source, (source + 1) % n], 1.0, 0.02, 0.3, [0.0, 0.0, 1.0]),
     "1PN": lambda n, source: vv.PostNewtonian(source, 1.0, 40.0),
+    "oscillator": lambda n, source: vv.Harmonic(0.3 + source),
+    "electric field": lambda n, source: vv.UniformElectricField([0.3, -0.1, 0.0], np.arange(n) - float(source)),
     "frame": lambda n, source: vv.RotatingFrame([0.0, 0.0, 0.3], [0.1, source, 0.0]),
     "charges": lambda n, source: vv.Coulomb(np.arange(n) - float(source), k=0.3),
     "drag": lambda n, source: vv.LinearDrag(7.0 + source),
     "quadratic drag": lambda n, source: vv.QuadraticDrag(0.01 * np.arange(n)),
 }
 # Not those of more than one term, nor of places from a fixed point: alone they are told from another origin.
-SUMS = [name for name in FORCES if name not in ("two sources", "frame")]
+SUMS = [name for name in FORCES if name not in ("two sources", "frame", "oscillator")]
 
 
 def bodies(n: int, *, plane: bool, seed: int, speed: float = 0.3) -> vv.Particles:

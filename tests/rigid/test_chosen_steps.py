@@ -104,6 +104,18 @@ def test_turns_without_an_end_are_told_as_that(moments: list[float], told: str) 
         vv.Scene(body, vv.AppliedTorque([0.0, 0.0, 1e-9])).run([0, 1e9])
 
 
+def test_one_passage_of_short_steps_is_no_run_without_an_end() -> None:
+    """Steps of 1e-10 of the run at the pericenter of an orbit of e = 1 − 1e-5, some of a few hundred in all."""
+    pull, e = vv.CentralField(vv.potentials.Coulomb(k=-1.0)), 1 - 1e-5
+    speed = [0.0, float(np.sqrt((1 - e) / (1 + e))), 0.0]
+    body = vv.RigidBody(
+        1.0, [1e-6, 1.2e-6, 1.5e-6], position=[1 + e, 0.0, 0.0], velocity=speed, angular_velocity=[0.0, 0.0, 0.1]
+    )
+    out = vv.Scene(body, vv.AppliedTorque([0.0, 0.0, 1e-7]), pull).run(t=2 * np.pi)
+    assert out.status is vv.Status.OK
+    assert out.stats.steps < 1000
+
+
 TILT = [float(np.sin(0.25)), 0.0, 0.0, float(np.cos(0.25))]
 ARM = [0.0, float(-0.5 * np.sin(0.5)), float(0.5 * np.cos(0.5))]
 

@@ -206,10 +206,10 @@ class GeneralizedEnsemble(Shown):
         if result is None:
             result = self.system._run(asked, self._states, self._parameters, threads, progress)
         out = GeneralizedEnsembleTrajectory(self, result, asked)
-        warn_of_coarse_times(self.system, asked, self._states, self._parameters)
+        lasts = out._states[:, -1], float(out.t[-1])
+        warn_of_coarse_times(self.system, asked, np.concatenate([self._states, lasts[0]]), self._parameters)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
-        lasts = out._states[:, -1], float(out.t[-1])
         try:
             warn_if_unresolved(self.system, asked, self._states, lasts, self._parameters, threads)
         except Interrupted as interrupted:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -113,21 +113,26 @@ def warn_if_unresolved(
 
 
 def warn_of_coarse_times(
-    system: GeneralizedSystem, asked: dict[str, Any], starts: NDArray[np.float64], values: NDArray[np.float64]
+    system: GeneralizedSystem, asked: dict[str, Any], states: NDArray[np.float64], values: NDArray[np.float64]
 ) -> None:
-    """Warn where the rates at states (B, 2n) change from one time to the next number by more than is asked for."""
+    """Warn where the rates change from one time to the next number by more than is asked for.
+
+    At states (k B, 2n) of B copies, those of all of them one after another, with the values of their parameters (B, P).
+    """
     if system._structure["autonomous"] or not times_may_be_coarse(*asked["span"]):
         return
-    copies = len(starts)
 
-    def told(times: NDArray[np.float64]) -> NDArray[np.float64]:
-        each = np.repeat(times, copies)
-        states, parameters = (np.tile(rows, (len(times), 1)) for rows in (starts, values))
-        rates: NDArray[np.float64] = system._model.rates(each, states, parameters)
-        return rates.reshape(len(times), copies, -1)
+    parameters = np.tile(values, (len(states) // len(values), 1))
 
+    def told(states: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+        each = np.repeat(times, len(states))
+        rows, of_rows = (np.tile(of_states, (len(times), 1)) for of_states in (states, parameters))
+        rates: NDArray[np.float64] = system._model.rates(each, rows, of_rows)
+        return rates.reshape(len(times), len(states), -1)
+
+    nudged = np.nextafter(states, np.where(np.arange(states.shape[1]) % 2 == 0, np.inf, -np.inf))
     limit = max(asked["rtol"], _WORTH_A_WORD)
-    warn_if_coarse(told, asked["span"], limit, "a rate of the system changes", alike=False)
+    warn_if_coarse(partial(told, states), asked["span"], limit, "a rate of the system changes", partial(told, nudged))
 
 
 def _look_at_steps(done: _Done) -> None:

@@ -218,10 +218,10 @@ class Runs(States):
         asked, outputs = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         self._check_start()
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
-        warn_of_coarse_times(as_system(self), asked, start[None, :], self._values[None, :])
         if STATUS[result["endings"][0]] is Status.STOPPED and _is_end(t):
             _end_at_the_stop(result)
         out = GeneralizedTrajectory(as_system(self), result, asked)
+        warn_of_coarse_times(as_system(self), asked, np.vstack([start, *out._states[-1:]]), self._values[None, :])
         if result["interrupted"]:
             raise Interrupted("the run was interrupted", out)
         failure = result["failures"][0]

@@ -62,8 +62,8 @@ pub(super) fn look(
         let many = outcome.counts.evaluations >= MANY_EVALUATIONS;
         // Who asks for energies pays for such sums.
         let cheap = pairs <= FEW_PAIRS || many || request.records("energy");
-        let told = plan.energy != Energy::Unknown || half_steps::pays(part, outcome.counts.evaluations);
-        if outcome.ending != Ending::Finished || !cheap || !told {
+        let tells = plan.energy != Energy::Unknown || half_steps::pays(part, outcome.counts.evaluations);
+        if outcome.ending != Ending::Finished || !cheap || !tells {
             continue;
         }
         let places = member * scene.particles..(member + 1) * scene.particles;
@@ -99,9 +99,9 @@ pub(super) fn look(
                 }
             };
             outcome.energy_error = error(whole);
-            let begun_with = kinetic.plus(size);
+            let (begun_with, told) = (kinetic.plus(size), outcome.energy_error > WORTH_A_LOOK);
             if matches!(plan.energy, Energy::Driven | Energy::Unknown)
-                && !(outcome.energy_error > WORTH_A_LOOK)
+                && !told
                 && begun_with.to_f64() >= LEAST
                 && change.over(begun_with).to_f64().abs() > ALL_THERE_WAS
                 && half_steps::pays(part, outcome.counts.evaluations)

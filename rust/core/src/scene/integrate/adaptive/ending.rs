@@ -11,10 +11,10 @@ use crate::scene::integrate::report::{Ending, Report};
 use crate::scene::unit::Unit;
 use std::collections::BTreeSet;
 
-/// Steps that nobody named are no shorter than this part of a run: who asks for more of them names the method, …
-const SHORTEST: f64 = 1e-9;
-/// … after so many, which no longer tell of the first.
-const MANY_STEPS: u64 = 64;
+/// A run takes no more steps that nobody named than so many: who asks for more of them names the method. …
+const MOST_STEPS: f64 = 1e9;
+/// … So many, half a second, tell how many it would be; fewer are one passage that is soon over.
+const MANY_STEPS: u64 = 1 << 17;
 
 impl<'a> Run<'a> {
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
@@ -40,8 +40,9 @@ impl<'a> Run<'a> {
         }
         let tried = slot.counts.steps + slot.counts.rejected;
         let endless = self.job.plan.held_to.is_some()
+            && self.job.max_step == f64::MAX
             && tried >= MANY_STEPS
-            && self.clock.h.0[lane].abs() < SHORTEST * end.abs();
+            && tried as f64 * end.abs() > MOST_STEPS * elapsed.abs();
         let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
         let ending = if outcome.finished.lane(lane) && self.part.last.lane(lane) {
             Ending::Finished
