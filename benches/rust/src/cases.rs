@@ -127,6 +127,7 @@ pub fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -
         rtol: 1e-13,
         atol: None,
         max_step: None,
+        first_step: None,
         max_steps: None,
         record: vec!["position".to_owned(), "velocity".to_owned()],
         threads,

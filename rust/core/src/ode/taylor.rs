@@ -170,13 +170,12 @@ impl<S: Controlled> TaylorStep<S> {
         let (highest, times) = (*order, [&*h, &*unit]);
         // Rounding leads nobody astray.
         if norm.blocks.is_empty() {
-            let mut rounding = vec![S::zero(); rates.len()];
-            let astray = |rates: &mut [S], rounding: &[S]| {
+            let astray = |rates: &mut [S], rounding: Option<&[S]>| {
                 let missed = Missed { rates, blocks, highest, times, second_order };
                 let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
                 S::pass(OwnMissed { missed, blocks, rounding, tolerance, least, most })
             };
-            let seems = astray(rates, &rounding);
+            let seems = astray(rates, None);
             if !seems.any() {
                 return Ok(seems);
             }
@@ -187,6 +186,7 @@ impl<S: Controlled> TaylorStep<S> {
                 };
                 numbers.iter().enumerate().map(|(number, &x)| digit(number).multiply_add(x, x)).collect()
             };
+            let mut rounding = vec![S::zero(); rates.len()];
             if second_order {
                 let (q, v) = (nudged(next.q()), nudged(next.v()));
                 system.acceleration(t, &q, &v, &mut rounding, ticker)?;
@@ -196,7 +196,7 @@ impl<S: Controlled> TaylorStep<S> {
             for (rounding, rate) in rounding.iter_mut().zip(rates.iter()) {
                 *rounding = S::splat(ROUNDINGS) * (*rounding - *rate).abs();
             }
-            return Ok(astray(rates, &rounding));
+            return Ok(astray(rates, Some(&rounding)));
         }
         let missed = Missed { rates, blocks, highest, times, second_order };
         S::pass(missed);

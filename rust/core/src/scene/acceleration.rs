@@ -27,6 +27,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         rtol: 1e-9,
         atol: None,
         max_step: None,
+        first_step: None,
         max_steps: None,
         record: Vec::new(),
         events: Vec::new(),

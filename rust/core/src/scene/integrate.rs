@@ -51,6 +51,8 @@ pub struct Job<'a> {
     pub atol: Option<&'a AbsoluteTolerances>,
     /// Longest step.
     pub max_step: f64,
+    /// The longest first step of an adaptive method.
+    pub first_step: f64,
     /// Most steps.
     pub max_steps: u64,
     /// Whether the events of the plan are looked for.

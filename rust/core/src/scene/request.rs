@@ -91,6 +91,8 @@ pub struct Request {
     pub atol: Option<AbsoluteTolerances>,
     /// The longest step of an adaptive method.
     pub max_step: Option<f64>,
+    /// The longest first step of an adaptive method.
+    pub first_step: Option<f64>,
     /// The most steps, accepted or not, of a trajectory.
     pub max_steps: Option<i64>,
     /// Names from [`columns`].

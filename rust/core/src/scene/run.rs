@@ -280,6 +280,7 @@ fn run_part(
         asked_rtol: request.rtol,
         atol: request.atol.as_ref(),
         max_step: plan.max_step(request),
+        first_step: request.first_step.unwrap_or(f64::MAX),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
         watches: true,
         from: part.from(),

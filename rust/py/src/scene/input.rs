@@ -161,6 +161,7 @@ impl Asked<'_> {
             rtol,
             atol,
             max_step,
+            first_step: None,
             max_steps,
             record,
             events,

@@ -125,8 +125,8 @@ pub(in crate::ode) struct OwnMissed<'a, S> {
     pub(in crate::ode) missed: Missed<'a, S>,
     /// Blocks of coefficients, from order 0 on.
     pub(in crate::ode) blocks: &'a [S],
-    /// What is rounding of each rate.
-    pub(in crate::ode) rounding: &'a [S],
+    /// What is rounding of each rate, if that is looked at.
+    pub(in crate::ode) rounding: Option<&'a [S]>,
     /// The tolerance, the least that it is taken for, and how many there may be.
     pub(in crate::ode) tolerance: &'a S,
     pub(in crate::ode) least: f64,
@@ -139,7 +139,7 @@ impl<S: Element> Pass<S> for OwnMissed<'_, S> {
     fn run<V: View<S>>(self) -> S::Mask {
         let Missed { rates, blocks, highest, times, second_order } = self.missed;
         let (rates, of_rates, blocks) = (V::view(rates), V::view(blocks), V::view(self.blocks));
-        let rounding = V::view(self.rounding);
+        let rounding = V::view(self.rounding.unwrap_or_default());
         let (unit, len) = (V::load(*times[1]), rates.len());
         let x = V::load(*times[0]) / unit;
         let moves = if second_order { unit * unit } else { unit };
@@ -148,7 +148,10 @@ impl<S: Element> Pass<S> for OwnMissed<'_, S> {
         let mut most = V::zero();
         for (number, &rate) in rates.iter().enumerate() {
             let (slope, goes) = slope_and_reach(of_rates, blocks, (len, number), highest, x);
-            let missed = (rate * moves - slope).abs() - rounding[number] * moves;
+            let mut missed = (rate * moves - slope).abs();
+            if let Some(&rounding) = rounding.get(number) {
+                missed = missed - rounding * moves;
+            }
             // What is no number stays none.
             let missed = V::select(missed.less(V::zero()), V::zero(), missed) * in_a_step;
             let nothing = missed.less_equal(V::zero());

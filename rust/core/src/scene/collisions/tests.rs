@@ -42,6 +42,7 @@ fn collided(scene: &Scene, rule: Collisions, end: f64) -> Result<Output> {
         rtol: 1e-9,
         atol: None,
         max_step: None,
+        first_step: None,
         max_steps: None,
         record: Vec::new(),
         events: Vec::new(),

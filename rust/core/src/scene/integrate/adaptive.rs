@@ -371,6 +371,10 @@ impl<'a> Run<'a> {
         if let Forces::Turning(bodies) = forces {
             measure::set_momenta(norm, bodies, (state, clock), fresh, ticker)?;
         }
-        trial.start(fresh, forces.system(), state, clock, norm, ticker)
+        trial.start(fresh, forces.system(), state, clock, norm, ticker)?;
+        let first = Lanes::splat(scale(self.job.first_step, -self.job.plan.units.time));
+        let shorter = Lanes::select(clock.h.less(Lanes::zero()), -first, first);
+        clock.h = Lanes::select(fresh.and(first.less(clock.h.abs())), shorter, clock.h);
+        Ok(())
     }
 }

@@ -59,6 +59,7 @@ pub(super) fn energy_at_end(
         asked_rtol: halved.rtol,
         atol: halved.atol.as_ref(),
         max_step: plan.max_step(&halved),
+        first_step: f64::MAX,
         max_steps: u64::MAX,
         watches: false,
         from: None,

@@ -210,6 +210,7 @@ fn again(
         asked_rtol: request.rtol,
         atol: request.atol.as_ref(),
         max_step: part.plan.max_step(request),
+        first_step: request.first_step.unwrap_or(f64::MAX),
         max_steps: u64::MAX,
         watches: false,
         from: part.from(),

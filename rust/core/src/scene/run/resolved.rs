@@ -102,6 +102,7 @@ pub(super) fn look(
             let (begun_with, told) = (kinetic.plus(size), outcome.energy_error > WORTH_A_LOOK);
             if matches!(plan.energy, Energy::Driven | Energy::Unknown)
                 && !told
+                && outcome.unresolved.is_none()
                 && begun_with.to_f64() >= LEAST
                 && change.over(begun_with).to_f64().abs() > ALL_THERE_WAS
                 && half_steps::pays(part, outcome.counts.evaluations)

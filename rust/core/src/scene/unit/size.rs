@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Above this many bodies the smallest separation is estimated from the mean density instead.
 const ALL_PAIRS: usize = 8192;
 
+/// What is more than so many times as far along one axis is farther away, whatever rounding makes of a distance.
+const FARTHER: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
+
 /// So many roundings of a place an error of a step is not told from.
 const ROUNDINGS: f64 = 2.0;
 
@@ -131,15 +134,35 @@ impl Prepared {
             // Mean spacing; a cube root by Newton would be no better for an estimate.
             separation = extent / (bodies as f64).sqrt().sqrt();
         } else {
-            for i in 0..active {
-                for j in i + 1..bodies {
-                    separation = separation.min(distance(self.position[i], self.position[j]));
+            // Along the axis on which they are spread most, none that is farther away there than the closest pair is closer.
+            let order = self.along_the_longest_axis();
+            for (place, &(x, i)) in order.iter().enumerate() {
+                for &(beyond, j) in &order[place + 1..] {
+                    if beyond - x > separation * FARTHER {
+                        break;
+                    }
+                    if i < active || j < active {
+                        separation = separation.min(distance(self.position[i], self.position[j]));
+                    }
                 }
                 ticker.tick()?;
             }
         }
         let length = plan.forces_of(self.unit.copy).iter().map(|force| force.length()).fold(0.0, f64::max);
         Ok(separation.max(self.units.take(length, [1, 0, 0])))
+    }
+
+    /// The bodies in the order of the coordinate in which they are spread most, each after that.
+    fn along_the_longest_axis(&self) -> Vec<(f64, usize)> {
+        let spread = |c: usize| {
+            let all = || self.position.iter().map(|x| x[c]);
+            all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+        };
+        let axis = (1..3).fold(0, |best, c| if spread(c) > spread(best) { c } else { best });
+        let mut order: Vec<(f64, usize)> =
+            self.position.iter().enumerate().map(|(body, x)| (x[axis], body)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order
     }
 
     /// The largest acceleration that a force gives to a body of the unit, at rest where it is, in the course of the run.

@@ -21,6 +21,9 @@ const REST: f64 = 1.0 / (1_u64 << 40) as f64;
 /// so many times in succession.
 const RESTS: u32 = 16;
 
+/// The longest first step after a collision, beside the mean time from one to the next.
+const TIMES_BETWEEN: f64 = 4.0;
+
 /// Impulses at one time after which bodies are pressed together, for each pair in contact.
 const IMPULSES: usize = 1000;
 
@@ -145,6 +148,7 @@ impl Member {
         let asked = Request {
             times: request.times[self.outcome.rows..end].to_vec(),
             events,
+            first_step: self.first_step(),
             max_steps,
             threads: if whole.copies > 1 { 1 } else { request.threads },
             collisions: None,
@@ -157,6 +161,13 @@ impl Member {
             ticker.control().set_total(total + ticker.control().progress().0 - done);
         }
         self.take(whole, request, &leg, &names, output)
+    }
+
+    /// The longest first step of a leg, a few times the mean time from one collision to the next. Those that come near each
+    /// other in a step are all looked at, which in one that is long beside that time are most of all pairs.
+    fn first_step(&self) -> Option<f64> {
+        let between = self.elapsed().abs() / self.lines.len() as f64;
+        (between > 0.0 && between.is_finite()).then_some(TIMES_BETWEEN * between)
     }
 
     /// How far it has come, and what that leaves out.

@@ -77,6 +77,7 @@ impl Watch<'_> {
         }
         Ok(())
     }
+
     /// Below what the value of an event is zero for all that the numbers of a state tell: these bodies, after that time, of
     /// which it sees that.
     pub(super) fn rounding_as_told(
