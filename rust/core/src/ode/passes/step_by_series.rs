@@ -150,7 +150,7 @@ impl<S: Element> Pass<S> for OwnMissed<'_, S> {
             let (slope, goes) = slope_and_reach(of_rates, blocks, (len, number), highest, x);
             let mut missed = (rate * moves - slope).abs();
             if let Some(&rounding) = rounding.get(number) {
-                missed = missed - rounding * moves;
+                missed -= rounding * moves;
             }
             // What is no number stays none.
             let missed = V::select(missed.less(V::zero()), V::zero(), missed) * in_a_step;
