@@ -4,13 +4,14 @@
 //! The one idea: the coefficients that make the step also say how long it may be, before it is taken, so none is refused;
 //! and they are the continuous extension. Orders and steps: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 
+mod astray;
 mod visited;
 
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
 use super::passes::series::{LargestRoot, OwnInverse, Sum, Sums, nest};
-use super::passes::step_by_series::{Choice, Chosen, FAR, Missed, OwnMissed};
+use super::passes::step_by_series::{Choice, Chosen, FAR};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -36,12 +37,6 @@ const MARGIN: f64 = 0.01;
 const LOOSEST: f64 = 1e-3;
 /// Of a step that led astray, so much is tried next.
 const SHORTER: f64 = 1.0 / 8.0;
-/// Rates that are the same but for rounding differ by less, relative to how far they move a number.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// So many times what a last digit of all numbers makes of a rate is rounding.
-const ROUNDINGS: f64 = 8.0;
-/// So many tolerances the orders that a series leaves out may count in its second derivative, at the end of a step.
-const NEXT_ORDERS: f64 = 300.0;
 /// The first unit of numbers that are measured by themselves, as a part of the whole time.
 const FIRST_UNIT: f64 = 1.0 / 1024.0;
 /// How far numbers go in a step is found from the step, and that from how far they go: each time with a seventh of the error.
@@ -147,66 +142,6 @@ impl<S: Controlled> TaylorStep<S> {
             inverse = S::select(untold, found, inverse);
         }
         inverse
-    }
-
-    /// Whether the rates at the end of a step are not those of the polynomial that led there: a force may begin on the way that
-    /// no coefficient tells of, as of a steep wall after a long free way.
-    fn leads_astray(
-        &mut self,
-        state: &State<S>,
-        norm: &Norm<S>,
-        system: &mut dyn System<S>,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<S::Mask> {
-        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, reached: t, .. } = self;
-        let (len, second_order) = (*len, matches!(next.form(), Form::SecondOrder(_)));
-        let blocks = if second_order {
-            system.acceleration(t, next.q(), next.v(), rates, ticker)?;
-            &v[..]
-        } else {
-            system.rate(t, next.all().0, rates, ticker)?;
-            &q[..]
-        };
-        let (highest, times) = (*order, [&*h, &*unit]);
-        // Rounding leads nobody astray.
-        if norm.blocks.is_empty() {
-            let astray = |rates: &mut [S], rounding: Option<&[S]>| {
-                let missed = Missed { rates, blocks, highest, times, second_order };
-                let (blocks, tolerance, least, most) = (&q[..], &norm.rtol, ROUNDING, NEXT_ORDERS);
-                S::pass(OwnMissed { missed, blocks, rounding, tolerance, least, most })
-            };
-            let seems = astray(rates, None);
-            if !seems.any() {
-                return Ok(seems);
-            }
-            // Of a difference of places that hardly differ from where they were, it may be all.
-            let nudged = |numbers: &[S]| -> Vec<S> {
-                let digit = |number: usize| {
-                    S::splat(if number.is_multiple_of(2) { f64::EPSILON } else { -f64::EPSILON })
-                };
-                numbers.iter().enumerate().map(|(number, &x)| digit(number).multiply_add(x, x)).collect()
-            };
-            let mut rounding = vec![S::zero(); rates.len()];
-            if second_order {
-                let (q, v) = (nudged(next.q()), nudged(next.v()));
-                system.acceleration(t, &q, &v, &mut rounding, ticker)?;
-            } else {
-                system.rate(t, &nudged(next.all().0), &mut rounding, ticker)?;
-            }
-            for (rounding, rate) in rounding.iter_mut().zip(rates.iter()) {
-                *rounding = S::splat(ROUNDINGS) * (*rounding - *rate).abs();
-            }
-            return Ok(astray(rates, Some(&rounding)));
-        }
-        let missed = Missed { rates, blocks, highest, times, second_order };
-        S::pass(missed);
-        let x = *h / *unit;
-        let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
-        let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
-        let changes = if second_order { [change(x * x), change(x / *unit)] } else { [change(x); 2] };
-        let rounding = norm.rtol / norm.rtol.max(S::splat(ROUNDING));
-        let size2 = norm.sizes(state, next, t, &changes)[0] * rounding * rounding;
-        Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
     }
 
     /// The state at the time `x` after the expansion.

@@ -11,6 +11,7 @@ mod quiet;
 mod refusals;
 mod series;
 mod solutions;
+mod tolerances;
 mod turn;
 mod turning;
 mod units;
@@ -303,22 +304,6 @@ impl Plan {
     /// Whether the motion of a copy is integrated for its events alone: without any it would be known.
     pub fn knows(&self, copy: usize) -> bool {
         self.known.as_ref().is_some_and(|known| known.of_member(copy).is_some())
-    }
-
-    /// The relative tolerance of a run: events do not cost the digits that a closed form has.
-    pub fn rtol(&self, request: &Request) -> f64 {
-        if let Some(rtol) = self.held_to {
-            rtol
-        } else if self.known.as_ref().is_some_and(|known| !known.integrates()) {
-            request.rtol.min(AS_KNOWN)
-        } else {
-            request.rtol
-        }
-    }
-
-    /// The longest step of a run, with the sign of time left out.
-    pub fn max_step(&self, request: &Request) -> f64 {
-        request.max_step.or(self.longest_untold).unwrap_or(f64::MAX)
     }
 
     /// The units for a copy by itself.
