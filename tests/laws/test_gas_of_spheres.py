@@ -46,8 +46,9 @@ def foretold(x: Array, v: Array, radius: float, end: float) -> tuple[Array, int]
             table[:, one] = table[one]
 
 
+@pytest.mark.parametrize("method", ["auto", "verner98"])
 @pytest.mark.parametrize(("n", "radius"), [(64, 0.3), (216, 0.2), (216, 0.3)])
-def test_every_collision_is_met(n: int, radius: float) -> None:
+def test_every_collision_is_met(n: int, radius: float, method: vv.typing.MethodName) -> None:
     """Legs begin with steps of some times between two collisions: none is missed that another comes before.
 
     Roundings of places grow as spheres scatter each other, tenfold in a collision of each: 1e-9 after some of them.
@@ -55,11 +56,12 @@ def test_every_collision_is_met(n: int, radius: float) -> None:
     x, v = gas(n, radius)
     expected, met = foretold(x, v, radius, 1.0)
     scene = vv.Scene(vv.Particles(np.ones(n), x, v, radius=radius))
-    out = scene.run(t=1.0, collisions="bounce")
+    out = scene.run(t=1.0, collisions="bounce", method=method)
+    assert (out.stats.steps == 0) == (method == "auto")
     assert len(out.collisions) == met > 20
     np.testing.assert_allclose(out.position[-1], expected, rtol=0, atol=1e-9)
     # Other outputs change no bit, of a chain of legs either.
-    many = scene.run(t=np.linspace(0.0, 1.0, 33), collisions="bounce")
+    many = scene.run(t=np.linspace(0.0, 1.0, 33), collisions="bounce", method=method)
     np.testing.assert_array_equal(many.position[-1], out.position[-1])
     np.testing.assert_array_equal(many.collisions.t, out.collisions.t)
 
@@ -68,7 +70,7 @@ def test_a_quiet_time_after_many_collisions_is_passed_in_few_steps() -> None:
     """Steps grow: the time without collisions is some hundred times as long as that with them."""
     x, v = gas(64, 0.3)
     scene = vv.Scene(vv.Particles(np.ones(64), x, v, radius=0.3))
-    early = scene.run(t=10.0, collisions="bounce")
-    late = scene.run(t=1000.0, collisions="bounce")
+    early = scene.run(t=10.0, collisions="bounce", method="verner98")
+    late = scene.run(t=1000.0, collisions="bounce", method="verner98")
     assert len(early.collisions) == len(late.collisions)
     assert late.stats.steps < early.stats.steps + 64 * 10

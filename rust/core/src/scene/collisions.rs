@@ -18,6 +18,7 @@ pub use table::{Collision, Table};
 
 use super::Scene;
 use super::events::{Event, What};
+use super::plan::member;
 use super::request::Request;
 use crate::error::{Error, Result};
 use crate::words::{number, unknown};
@@ -130,6 +131,11 @@ pub(super) fn contact(radius: Vec<f64>, touching: Vec<(usize, usize)>) -> Event 
 /// Whether any two bodies of a copy may touch.
 fn may_touch(scene: &Scene, copy: usize) -> bool {
     scene.particles > 1 && scene.radii(copy).iter().any(|&radius| radius > 0.0)
+}
+
+/// Whether bodies of one copy fly straight from one contact to the next, the times of which are known then.
+fn flies(scene: &Scene, request: &Request) -> bool {
+    request.method == "auto" && member(scene, 0).forces.is_empty()
 }
 
 /// What collisions are asked for and may happen.

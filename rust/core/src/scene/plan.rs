@@ -195,8 +195,11 @@ impl Plan {
         let method = chosen.unwrap_or(method);
         // Events are looked for on steps.
         let closed_forms = automatic && request.events.is_empty() && !turning.steps();
-        let solutions =
-            if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
+        let solutions = match &request.events[..] {
+            _ if closed_forms => Solutions::of(scene, ticker)?,
+            [_] if automatic && touching => Solutions::of(scene, ticker)?.straight_lines(),
+            _ => Solutions::integration(scene.copies),
+        };
         // A contact ends a leg of a run, and the next begins anew.
         let known = if automatic && !closed_forms && !turning.steps() && !touching {
             Some(Solutions::of(scene, ticker)?)

@@ -90,6 +90,11 @@ impl Impact {
         CONTACT + 32.0 * f64::EPSILON * far / (self.radius[i] + self.radius[j])
     }
 
+    /// Whether two spheres are in contact.
+    pub fn is_contact(&self, (i, j): (usize, usize)) -> bool {
+        self.gap(i, j) <= self.contact(i, j)
+    }
+
     /// Whether two spheres are in each other, by more than rounding.
     pub fn overlap(&self, (i, j): (usize, usize)) -> bool {
         self.gap(i, j) < -self.contact(i, j)
@@ -112,7 +117,7 @@ impl Impact {
             |i| self.radius[i] > 0.0,
             |i, j| {
                 let (i, j) = (i.min(j), i.max(j));
-                if self.is_whole((i, j)) && self.gap(i, j) <= self.contact(i, j) {
+                if self.is_whole((i, j)) && self.is_contact((i, j)) {
                     pairs.push((i, j));
                 }
             },
@@ -126,9 +131,9 @@ impl Impact {
         self.overlap(pair) || self.approach(pair).is_some()
     }
 
-    /// The pairs that become one if they may.
-    pub fn meeting_pairs(&self) -> BTreeSet<(usize, usize)> {
-        self.touching().into_iter().filter(|&pair| self.meet(pair)).collect()
+    /// Of pairs in contact, those that become one if they may.
+    pub fn meeting_pairs(&self, touching: Vec<(usize, usize)>) -> BTreeSet<(usize, usize)> {
+        touching.into_iter().filter(|&pair| self.is_whole(pair) && self.meet(pair)).collect()
     }
 
     /// Brings such pairs up to date after two of their bodies have become one: no others have changed.
@@ -138,7 +143,7 @@ impl Impact {
         let with_left = (0..self.mass.len()).map(|other| (left.min(other), left.max(other)));
         pairs.extend(with_left.filter(|&(a, b)| {
             let spheres = a != b && (self.radius[a] > 0.0 || self.radius[b] > 0.0);
-            let touch = spheres && self.is_whole((a, b)) && self.gap(a, b) <= self.contact(a, b);
+            let touch = spheres && self.is_whole((a, b)) && self.is_contact((a, b));
             touch && self.meet((a, b))
         }));
     }

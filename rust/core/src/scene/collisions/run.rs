@@ -1,5 +1,7 @@
 //! A run with collisions: every copy by itself, leg after leg, put together as one run.
 
+mod flights;
+mod fly;
 mod jumps;
 mod leg;
 mod member;

@@ -140,7 +140,13 @@ impl Plan {
                 over.max(inside).to_string(),
                 if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned(),
             );
-        } else if self.threads.0 > 1 {
+            return rows;
+        }
+        if let (Some(rule), true) = (self.collisions, self.touching) {
+            let why = "straight lines from one contact to the next, which is known: no steps";
+            row("collisions", rule.to_string(), why.to_owned());
+        }
+        if self.threads.0 > 1 {
             row("threads", self.threads.0.to_string(), "over ensemble members and output times".to_owned());
         }
         rows

@@ -1,7 +1,7 @@
 //! How the motion of each ensemble member is found: by a closed form of the registry, or step by step.
 
 use super::super::Scene;
-use crate::closed_forms::{ClosedForm, Member};
+use crate::closed_forms::{ClosedForm, Member, free};
 use crate::error::Result;
 use crate::forces::ForceTerm;
 use crate::forces::term::Bodies;
@@ -36,6 +36,14 @@ impl Solutions {
             each.truncate(1);
         }
         Ok(Self { each, members })
+    }
+
+    /// Straight lines, along which contacts are known as well; all others step by step.
+    pub fn straight_lines(mut self) -> Self {
+        for solution in &mut self.each {
+            *solution = solution.filter(|form| core::ptr::eq(*form, &free::FORM));
+        }
+        self
     }
 
     /// Step by step.

@@ -1,14 +1,18 @@
 //! One copy on its way through its collisions: leg after leg, each to the next contact or to the end.
 
 use super::super::{Collision, Collisions, Impact};
+use super::flights::Flights;
 use super::leg::Leg;
 use super::squeezed::Squeezed;
 use super::start::{bodies_of, part_of};
 use super::wanted;
 use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
 use crate::parallel::Ticker;
 use crate::scene::Scene;
+use crate::scene::collisions::flies;
 use crate::scene::columns::Columns;
+use crate::scene::events::Event;
 use crate::scene::integrate::Ending;
 use crate::scene::request::Request;
 use crate::scene::room::give_back;
@@ -45,7 +49,7 @@ pub(super) struct Member {
     /// What the time of that leaves out.
     time_rest: f64,
     /// When the run began.
-    t0: f64,
+    pub(super) t0: f64,
     pub(super) events: Events,
     pub(super) lines: Vec<Collision>,
     pub(super) kept: Option<Kept>,
@@ -54,9 +58,13 @@ pub(super) struct Member {
     /// Where the last leg began.
     pub(super) begun: Reached,
     pub(super) copy: usize,
+    /// What is asked of each leg, but for times and events.
+    of_a_leg: Request,
     rule: Collisions,
     met: BTreeMap<(usize, usize), Met>,
     squeezed: Squeezed,
+    /// The bodies on their way to the next contact, where no force acts.
+    pub(super) flights: Option<Flights>,
     /// How often each event was found.
     pub(super) found: Vec<u64>,
 }
@@ -71,6 +79,13 @@ impl Member {
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let bodies = bodies_of(scene, copy, rule, direction);
+        let of_a_leg = Request {
+            times: Vec::new(),
+            events: Vec::new(),
+            threads: if scene.copies > 1 { 1 } else { request.threads },
+            collisions: None,
+            ..request.clone()
+        };
         let mut member = Self {
             begun: bodies.states(),
             bodies,
@@ -83,9 +98,11 @@ impl Member {
             kept: None,
             from: 0,
             copy,
+            of_a_leg,
             rule,
             met: BTreeMap::new(),
             squeezed: Squeezed::default(),
+            flights: None,
             found: vec![0; request.events.len()],
         };
         let mut touching = member.bodies.touching();
@@ -113,10 +130,8 @@ impl Member {
             if !goes_on || member.outcome.rows == end {
                 return Ok(member);
             }
-            touching = member.bodies.touching();
-            // Spheres that graze each other may be told apart already.
-            if member.bodies.is_whole(pair) && !touching.contains(&pair) {
-                touching.push(pair);
+            if member.flights.is_none() {
+                touching = member.touching(Some(pair));
             }
         }
     }
@@ -130,8 +145,14 @@ impl Member {
         (end, touching): (usize, Option<&[(usize, usize)]>),
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<(usize, usize)>> {
+        if self.flights.is_some() {
+            return self.fly(whole, request, ticker);
+        }
         let leg = Leg::of(&self.bodies);
         let mut scene = leg.scene(whole, self.copy, &self.bodies, self.time());
+        if touching.is_some() && request.events.is_empty() && flies(&scene, request) {
+            return self.fly(whole, request, ticker);
+        }
         if self.lines.is_empty() && self.outcome.rows == 0 {
             scene.continuation =
                 whole.continuation.as_ref().map(|from| part_of(from, whole, self.copy, &leg));
@@ -145,15 +166,8 @@ impl Member {
             self.outcome.ending = Ending::TooManySteps;
             return Ok(None);
         }
-        let asked = Request {
-            times: request.times[self.outcome.rows..end].to_vec(),
-            events,
-            first_step: self.first_step(),
-            max_steps,
-            threads: if whole.copies > 1 { 1 } else { request.threads },
-            collisions: None,
-            ..request.clone()
-        };
+        let times = request.times[self.outcome.rows..end].to_vec();
+        let asked = Request { max_steps, ..self.asked(times, events) };
         let (done, total) = ticker.control().progress();
         let output = run_through(&scene, &asked, ticker)?;
         if whole.copies == 1 {
@@ -161,6 +175,11 @@ impl Member {
             ticker.control().set_total(total + ticker.control().progress().0 - done);
         }
         self.take(whole, request, &leg, &names, output)
+    }
+
+    /// What is asked of a leg.
+    pub(super) fn asked(&self, times: Vec<f64>, events: Vec<Event>) -> Request {
+        Request { times, events, first_step: self.first_step(), ..self.of_a_leg.clone() }
     }
 
     /// The longest first step of a leg, a few times the mean time from one collision to the next. Those that come near each
@@ -175,13 +194,31 @@ impl Member {
         (self.outcome.time, self.time_rest)
     }
 
+    /// Comes to a time so long after the start, along the run.
+    pub(super) fn set_time(&mut self, along: DoubleDouble) {
+        let elapsed = if self.bodies.direction < 0.0 { -along } else { along };
+        (self.outcome.time, self.time_rest) = (DoubleDouble::from(self.t0) + elapsed).parts();
+    }
+
     /// How long after the start that is.
     fn elapsed(&self) -> f64 {
         (self.outcome.time - self.t0) + self.time_rest
     }
 
+    /// The pairs in contact, and one that was found: spheres that graze each other may be told apart already.
+    fn touching(&self, found: Option<(usize, usize)>) -> Vec<(usize, usize)> {
+        let mut touching = match &self.flights {
+            Some(flights) => flights.touching(&self.bodies),
+            None => self.bodies.touching(),
+        };
+        if let Some(found) = found.filter(|&pair| self.bodies.is_whole(pair) && !touching.contains(&pair)) {
+            touching.push(found);
+        }
+        touching
+    }
+
     /// Takes in what a leg gives; the spheres that touch at its end.
-    fn take(
+    pub(super) fn take(
         &mut self,
         whole: &Scene,
         request: &Request,
@@ -212,9 +249,7 @@ impl Member {
         if rows == 0 && at_once {
             self.columns = output.columns;
         } else {
-            if self.columns.times == 0 {
-                self.columns = Columns::new(1, request.times.len(), whole.particles, &wanted(request))?;
-            }
+            self.make_columns(whole, request)?;
             record(&mut self.columns, &output.columns, (rows, outcome.rows), leg);
             give_back(output.columns.position);
             give_back(output.columns.velocity);
@@ -237,18 +272,24 @@ impl Member {
         Ok(None)
     }
 
+    /// Room for all rows, if there is none yet.
+    pub(super) fn make_columns(&mut self, whole: &Scene, request: &Request) -> Result<()> {
+        if self.columns.times == 0 {
+            self.columns = Columns::new(1, request.times.len(), whole.particles, &wanted(request))?;
+        }
+        Ok(())
+    }
+
     /// Settles a contact, and all others at the same time; whether the run goes on.
     pub(super) fn collide(&mut self, pair: Option<(usize, usize)>) -> bool {
         // What was held at a node is of before.
         self.kept = None;
         self.from = 0;
-        let goes_on = match self.rule {
+        match self.rule {
             Collisions::Stop => self.stop(pair),
             Collisions::Bounce(restitution) => self.bounce(pair, restitution),
             Collisions::Merge => self.merge(pair),
-        };
-        self.begun = self.bodies.states();
-        goes_on
+        }
     }
 
     fn put(&mut self, collision: Collision) {
@@ -271,10 +312,7 @@ impl Member {
     /// matter how bodies are numbered.
     fn bounce(&mut self, mut found: Option<(usize, usize)>, restitution: f64) -> bool {
         let (t, elapsed) = (self.outcome.time, self.elapsed());
-        let mut touching = self.bodies.touching();
-        if let Some(pair) = found.filter(|pair| !touching.contains(pair)) {
-            touching.push(pair);
-        }
+        let touching = self.touching(found);
         // Spheres that graze each other may be parting already, by rounding.
         let mut grazing = found.filter(|&pair| self.bodies.approach(pair).is_none());
         for _ in 0..IMPULSES * (1 + touching.len()) {
@@ -319,22 +357,16 @@ impl Member {
 
     fn merge(&mut self, pair: Option<(usize, usize)>) -> bool {
         let t = self.outcome.time;
-        let mut meeting = None;
-        let mut next = pair;
-        loop {
-            if let Some(pair) = next {
-                let collision = self.bodies.merge(pair, t);
-                self.put(collision);
-                if let Some(meeting) = &mut meeting {
-                    self.bodies.update(meeting, pair);
-                }
-            }
+        let mut meeting = self.bodies.meeting_pairs(self.touching(pair));
+        let mut next = pair.or_else(|| meeting.first().copied());
+        while let Some(pair) = next {
+            let collision = self.bodies.merge(pair, t);
+            self.put(collision);
             // A body that has grown may have reached others.
-            next = meeting.get_or_insert_with(|| self.bodies.meeting_pairs()).first().copied();
-            if next.is_none() {
-                return true;
-            }
+            self.bodies.update(&mut meeting, pair);
+            next = meeting.first().copied();
         }
+        true
     }
 }
 
