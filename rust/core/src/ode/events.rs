@@ -203,9 +203,64 @@ pub(crate) fn zero(
     Ok(if f2.abs() < f1.abs() { x2 } else { x1 })
 }
 
+/// By which the looks before the first sample of a step come nearer to its start, and how many there are.
+const NEARER: f64 = 0.125;
+const LOOKS: u32 = 16;
+
+/// Of a function that is zero at the start of a step: a point between that and the first sample at which it has the other sign
+/// than there. It leaves to that side and is back soon, as what is thrown up from the ground in a step that is long beside its
+/// flight. Still nearer to the start it has that sign, too, which rounding would not have made of both; a value that is
+/// nothing but rounding may be told as 0.
+pub(crate) fn before_the_first(
+    first: (f64, f64),
+    mut value: impl FnMut(f64) -> Result<f64>,
+) -> Result<Option<(f64, f64)>> {
+    let mut theta = first.0;
+    let mut found = None;
+    for _ in 0..LOOKS {
+        theta *= NEARER;
+        let here = value(theta)?;
+        let is_other = (here < 0.0 && first.1 >= 0.0) || (here > 0.0 && first.1 <= 0.0);
+        if here == 0.0 || (found.is_some() && !is_other) {
+            return Ok(None);
+        }
+        if found.is_some() {
+            return Ok(found);
+        }
+        if is_other {
+            found = Some((theta, here));
+        }
+    }
+    Ok(None)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_back_before_the_first_sample_is_seen() -> Result<()> {
+        let first = 1.0 / 64.0;
+        for flight in [1e-3, 1e-6, 1e-9, 3e-12] {
+            let thrown = |theta: f64| theta * (flight - theta);
+            let found = before_the_first((first, thrown(first)), |theta| Ok(thrown(theta)))?;
+            assert!(
+                found.is_some_and(|(theta, value)| value > 0.0 && 0.0 < theta && theta < flight),
+                "{flight}"
+            );
+        }
+        // What falls from rest, or leaves to the side of the first sample, has not been anywhere else, whatever rounding
+        // makes of the first digits.
+        let falls = |theta: f64| -theta * theta;
+        assert_eq!(before_the_first((first, falls(first)), |theta| Ok(falls(theta)))?, None);
+        let mut looks = 0;
+        let found = before_the_first((first, falls(first)), |theta| {
+            looks += 1;
+            Ok(if looks == 7 { 1e-13 } else { falls(theta) })
+        })?;
+        assert_eq!(found, None);
+        Ok(())
+    }
 
     #[test]
     fn zeros_are_located_to_round_off() -> Result<()> {

@@ -7,7 +7,7 @@
 
 use super::{Interval, Working};
 use crate::error::Result;
-use crate::ode::events::zero;
+use crate::ode::events::{before_the_first, zero};
 
 /// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.
 pub(super) const INSIDE: f64 = 0.458_6;
@@ -237,6 +237,13 @@ impl<'s> Search<'s> {
             points.push(if theta == INSIDE { inside } else { self.look(theta)? });
         }
         points.push(end);
+        if start.value == 0.0
+            && let Some((theta, _)) =
+                before_the_first((SAMPLES[0], points[1].value), |theta| self.value(theta))?
+        {
+            let point = self.look(theta)?;
+            points.insert(1, point);
+        }
         for pair in points.windows(2) {
             if let &[a, b] = pair
                 && crosses(a.value, b.value)

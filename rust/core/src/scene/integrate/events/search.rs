@@ -9,7 +9,7 @@ use super::turns::turns;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
 use crate::numerics::power_of_two::scale;
-use crate::ode::events::zero;
+use crate::ode::events::{before_the_first, zero};
 use crate::parallel::Ticker;
 
 /// Where a step is sampled, as fractions of it: close to its ends to see which way the function leaves and comes.
@@ -126,6 +126,18 @@ impl Search<'_, '_> {
         }
         points.push((1.0, self.ends[1]));
         rates.push(end);
+        if self.ends[0] == 0.0 && start.is_none_or(|rate| rate * points[1].1 <= 0.0) {
+            let before = before_the_first(points[1], |theta| {
+                let sight = self.sight_between(theta, ticker)?;
+                let is_rounding = sight.value.abs() <= self.watch.event(self.event).0.rounding(&sight);
+                Ok(if is_rounding { 0.0 } else { sight.value })
+            })?;
+            if let Some(point) = before {
+                let sight = self.sight_between(point.0, ticker)?;
+                points.insert(1, point);
+                rates.insert(1, self.rate(&sight));
+            }
+        }
         let mut brackets = crossings(&points);
         for (index, rates) in rates.windows(2).enumerate() {
             let (a, b) = (points[index], points[index + 1]);
