@@ -111,6 +111,8 @@ pub(super) struct Watch<'a> {
     known: Known,
     /// When each event was zero last, or nearly so at the start; before all time if it never was.
     last: Vec<f64>,
+    /// Of events that are zero at the start, what is nothing beside the numbers that they are made of.
+    nothing: Vec<f64>,
     /// Zeros of each event so far.
     counts: Vec<u64>,
     found: Vec<Found>,
@@ -178,6 +180,7 @@ impl<'a> Watch<'a> {
             settles: plan.turning.steps(),
             known: job.known(),
             last: vec![-plan.direction * f64::INFINITY; events.len()],
+            nothing: vec![0.0; events.len()],
             counts: vec![0; events.len()],
             found: Vec::new(),
             stopped: false,
@@ -197,6 +200,7 @@ impl<'a> Watch<'a> {
             // What starts at zero has not come there.
             let seen = (&sight, &watch.before[..], job.begun());
             if sight.value.abs() <= watch.rounding_as_told(unit, event, seen, &told, ticker)? {
+                watch.nothing[event] = watch.rounding_of_any(unit, event, seen, &told, ticker)?;
                 sight.value = 0.0;
             }
             watch.sights[event] = sight;

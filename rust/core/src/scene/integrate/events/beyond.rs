@@ -19,6 +19,9 @@ const DOUBLINGS: i32 = 36;
 /// So many times what a last digit of all numbers makes of an energy is rounding.
 const ROUNDINGS: f64 = 8.0;
 
+/// By what part of themselves the numbers change that a function of one's own is made of, to see what their rounding is.
+const NUDGE: f64 = 1.0 / 1_048_576.0;
+
 /// Position and velocity of bodies of the scene, as they are told.
 pub(super) type Told<'t> = dyn Fn(usize) -> [[f64; 3]; 2] + 't;
 
@@ -94,9 +97,38 @@ impl Watch<'_> {
             let far = places.iter().map(|&place| of(place)).fold([0.0; 2], farther);
             return Ok(own.rounding_as_told(sight, far));
         }
+        let change = self.nudged(unit, event, (sight, bodies, elapsed), (told, f64::EPSILON), ticker)?;
+        Ok(own.rounding(sight).max(ROUNDINGS * change))
+    }
+
+    /// The same, also of a function of one's own, of which nothing is known but what it makes of other numbers.
+    pub(super) fn rounding_of_any(
+        &self,
+        unit: &Prepared,
+        event: usize,
+        seen: (&Sight, &[Moving], f64),
+        told: &Told<'_>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        if !matches!(self.event(event).0.what, What::Function(_)) {
+            return self.rounding_as_told(unit, event, seen, told, ticker);
+        }
+        let change = self.nudged(unit, event, seen, (told, NUDGE), ticker)?;
+        Ok(ROUNDINGS * change * (f64::EPSILON / NUDGE))
+    }
+
+    /// How much an event changes if all numbers of a state change by a part of themselves.
+    fn nudged(
+        &self,
+        unit: &Prepared,
+        event: usize,
+        (sight, bodies, elapsed): (&Sight, &[Moving], f64),
+        (told, part): (&Told<'_>, f64),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let mut nudged = bodies.to_vec();
-        for &place in places {
-            let digits = of(place).map(|vector| vector.map(|x| f64::EPSILON * x.abs()));
+        for &place in self.event(event).1 {
+            let digits = told(self.bodies.indices[place]).map(|vector| vector.map(|x| part * x.abs()));
             for c in 0..3 {
                 let sign = if (place + c).is_multiple_of(2) { 1.0 } else { -1.0 };
                 nudged[place].position_rest[c] += sign * digits[0][c];
@@ -104,7 +136,7 @@ impl Watch<'_> {
             }
         }
         let beside = self.sight(unit, event, (&nudged, elapsed), ticker)?;
-        Ok(own.rounding(sight).max(ROUNDINGS * (beside.value - sight.value).abs()))
+        Ok((beside.value - sight.value).abs())
     }
 }
 

@@ -126,11 +126,13 @@ impl Search<'_, '_> {
         }
         points.push((1.0, self.ends[1]));
         rates.push(end);
-        if self.ends[0] == 0.0 && start.is_none_or(|rate| rate * points[1].1 <= 0.0) {
+        let begins = self.ends[0] == 0.0 && self.span.from == self.watch.job.begun();
+        if begins && start.is_none_or(|rate| rate * points[1].1 <= 0.0) {
             let before = before_the_first(points[1], |theta| {
                 let sight = self.sight_between(theta, ticker)?;
-                let is_rounding = sight.value.abs() <= self.watch.event(self.event).0.rounding(&sight);
-                Ok(if is_rounding { 0.0 } else { sight.value })
+                let rounding = self.watch.event(self.event).0.rounding(&sight);
+                let nothing = self.watch.nothing.get(self.event).map_or(rounding, |&own| rounding.max(own));
+                Ok(if sight.value.abs() <= nothing { 0.0 } else { sight.value })
             })?;
             if let Some(point) = before {
                 let sight = self.sight_between(point.0, ticker)?;
