@@ -59,7 +59,7 @@ def test_henon_and_heiles() -> None:
         speed = np.sqrt(0.25 - y**2 + 2 * y**3 / 3)
         return vv.systems.henon_heiles().at(position=[0.0, y], momentum=[speed, 0.0])
 
-    chaotic = from_a_place(-0.25).lyapunov_exponents(5000.0)
+    chaotic = from_a_place(-0.25).lyapunov_exponents(5000.0, interval=1.0)
     assert 0.035 < chaotic[0] < 0.055
     assert np.abs(chaotic[1:3]).max() < 0.003
     assert chaotic[0] + chaotic[3] == pytest.approx(0.0, abs=0.001)

@@ -245,7 +245,9 @@ class Flow:
 
         return flow_jacobian(self, number("t", t), rtol=rtol)[1]
 
-    def lyapunov_exponents(self: Any, t: float, *, interval: float = 1.0, rtol: float = 1e-12) -> NDArray[np.float64]:
+    def lyapunov_exponents(
+        self: Any, t: float, *, interval: float | None = None, rtol: float = 1e-12
+    ) -> NDArray[np.float64]:
         """Lyapunov's exponents over a time, the largest first.
 
         Units: one over the time of the system, in its units.
@@ -254,8 +256,9 @@ class Flow:
         ----------
         t : float
             The end.
-        interval : float
-            The longest time after which small differences are made orthonormal again; sooner where they grow apart.
+        interval : float, optional
+            The longest time after which small differences are made orthonormal again, by default about a thirtieth of
+            the whole; sooner where they grow apart.
         rtol : float
             As in `run`.
 
@@ -293,8 +296,8 @@ class Flow:
         """
         from visviva.generalized._neighbors import lyapunov_exponents
 
-        interval, t = number("interval", interval), number("t", t)
-        if interval <= 0.0:
+        interval, t = None if interval is None else number("interval", interval), number("t", t)
+        if interval is not None and interval <= 0.0:
             raise InvalidInput("interval", f"expected a positive number, got {interval!r}")
         if t == self.t0:
             raise InvalidInput("t", f"expected another time than the start, {self.t0:g}")

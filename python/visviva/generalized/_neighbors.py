@@ -31,6 +31,12 @@ __all__ = ["MOST_STEPS", "flow_jacobian", "lyapunov_exponents", "refuse_kinks"]
 MOST_STEPS = 100_000_000
 #: Where the least growth of neighbors is below this part of the most, it has lost as many of its digits.
 _DROWNED = 1e-5
+# Parts of a run of which nobody has told how long they may be, the first one beside the others, the shortest beside the
+# longest, and what is too short beside one to be a part of its own.
+_PARTS = 32
+_FIRST_PART = 1.0 / 1024.0
+_SHORTEST = 1e-9
+_LEFT_OVER = 1e-6
 #: Singular values above this part of the largest are none of constraints that depend on each other.
 _INDEPENDENT = 1e-12
 #: Instants, from this part of a time on, at which slopes are looked at for units; within how many parts of the run at
@@ -148,31 +154,32 @@ def refuse_kinks(system: GeneralizedSystem) -> None:
         )
 
 
-def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
+def lyapunov_exponents(
+    system: GeneralizedSystem, t: float, *, interval: float | None, rtol: float
+) -> NDArray[np.float64]:
     """Give all exponents, by the variational equations and orthonormal frames."""
     n = 2 * len(system.coordinates)
     refuse_kinks(system)
     system._check_start()
     model, neighbors = system._model.variational(), _Neighbors(system)
-    parts = max(1, round(abs(t - system.t0) / interval))
+    whole_time = t - system.t0
+    longest = whole_time / (_PARTS if interval is None else max(1, round(abs(whole_time) / interval)))
     state = system._start()
-    units = _units(system, system.t0 + min(parts, _PARTS_OF_UNITS) * (t - system.t0) / parts)[:, None]
+    units = _units(system, system.t0 + min(_PARTS_OF_UNITS * abs(longest), abs(whole_time)) * np.sign(whole_time))
+    units = units[:, None]
     frame = np.linalg.qr(neighbors.directions(system.t0, state) / units)[0] * units
     several = frame.shape[1]
     sums = np.zeros(several)
     if not several:
         return sums
-    # What is still to come of the part, the next last.
-    pending: list[tuple[float, float]] = []
-    part, each = 0, (t - system.t0) / parts
-    shortest = 1e-6 * abs(each)
+    # Unless somebody tells, the first part is short: nobody knows how fast neighbors part.
+    length = longest if interval is not None else longest * _FIRST_PART
+    shortest = _SHORTEST * abs(longest)
     reached = system.t0
     try:
-        while pending or part < parts:
-            if not pending:
-                part += 1
-                pending.append((reached, t if part == parts else system.t0 + part * each))
-            begin, end = pending.pop()
+        while reached != t:
+            begin, left = reached, t - reached
+            end = begin + length if abs(length) < (1.0 - _LEFT_OVER) * abs(left) else t
             asked = {
                 "method": "gauss16",
                 "span": (begin, end),
@@ -203,9 +210,10 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
                     raise ConvergenceError(
                         failed or "what neighbors do differs too much in the shortest time to be told apart", begin
                     )
-                middle = begin + 0.5 * (end - begin)
-                pending += [(middle, end), (begin, middle)]
+                length = 0.5 * (end - begin)
                 continue
+            if stretch.min() ** 2 > _DROWNED * stretch.max() ** 2:
+                length = 2.0 * length if abs(length) < 0.5 * abs(longest) else longest
             state, frame = after, turned * units
             sums, reached = sums + np.log(stretch), end
     except KeyboardInterrupt as stopped:
