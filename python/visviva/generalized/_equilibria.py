@@ -39,6 +39,8 @@ __all__ = ["Equilibrium", "equilibria"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
+#: Coordinates within a turn.
+_A_TURN = np.pi + 1e-6
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -107,7 +109,7 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool)
             reached = reached[where_something_acts(lambda at: matrices_along(system, at), reached, starts, n)]
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
-        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
+        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= _A_TURN]
     results: list[Equilibrium] = []
     without_mass, without_slopes = [], []
     for place in _once(reached, starts, distinguishing):
@@ -219,6 +221,10 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
     found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
+    if not insist:
+        # Thousands of starts may have run away from each other to where nothing acts.
+        within = [np.abs(each[:, distinguishing_coordinates(system)]) <= _A_TURN for each in (told, nearly)]
+        told, nearly = told[within[0].all(axis=1)], nearly[within[1].all(axis=1)]
     told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)
     if not len(told) and not np.isfinite(matrices_along(system, starts)[0]).all(axis=1).any():
         # Forces that have no value at rest, as those of dry friction, are told by name.

@@ -41,6 +41,8 @@ _DIRECTIONS = 8
 _FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
 _ON_THE_AXIS = 1e-7
+#: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
+_STEPS_TO_REST = 4
 #: States are found to this part of their sizes.
 _FOUND = SAME
 
@@ -61,9 +63,23 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
             )
         sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
         return by_sizes(system, states, sizes, lambda group: _found(system, group))
-    states = starts_of_a_search(2 * n)
-    # Momenta are zero in most equilibria.
-    return _found(system, np.concatenate([states, np.where(np.arange(2 * n) < n, states, 0.0)]), everywhere=True)
+    at_rest = _at_rest(system, starts_of_a_search(n))
+    return _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), everywhere=True)
+
+
+def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give states (S, 2n) at places (S, n) with the momenta of rest: zero, unless the coordinates rotate or the like."""
+    n = places.shape[1]
+    states = np.concatenate([places, np.zeros_like(places)], axis=1)
+    for _ in range(_STEPS_TO_REST):
+        rates, slopes = rates_and_slopes(system, states)
+        known = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
+        states, rates, slopes = states[known], rates[known], slopes[known]
+        inverse = np.linalg.pinv(slopes[:, :n, n:], rcond=_FOUND)
+        states[:, n:] -= np.einsum("sij,sj->si", inverse, rates[:, :n])
+        if not (np.abs(rates[:, :n]) > _FOUND * np.abs(slopes[:, :n, n:]).max(initial=0.0)).any():
+            break
+    return states
 
 
 def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool = False) -> list[Equilibrium]:

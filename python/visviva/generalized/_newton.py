@@ -25,6 +25,8 @@ __all__ = ["Scales", "rates_and_slopes", "reached", "scales_of"]
 _STEPS = 240
 #: Singular values below this part of the largest are none.
 _SINGULAR = 1e-13
+#: One over a number of condition below which a matrix is far from singular.
+_REGULAR = 1e-8
 #: A step is as long as the largest coordinate of a turn at most, or of its own start.
 _LONGEST = np.pi
 #: Where a step is what is left of the one before, to this part of what that one moved, rates are linear.
@@ -71,6 +73,8 @@ def reached(
     step, left, moved = np.full(states.shape, np.inf), np.full(states.shape, np.inf), np.zeros(states.shape)
     begun = np.arange(len(states))
     at_kinks, from_there = [states[:0]], [begun[:0]]
+    # Those that stand still are not moved on with the rest.
+    still: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]] = []
     for _ in range(_STEPS):
         rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
@@ -82,7 +86,7 @@ def reached(
         begun = begun[finite]
         rates, slopes = rates[finite], slopes[finite]
         if not len(states):
-            return np.concatenate(at_kinks), np.concatenate(from_there)
+            break
         slopes = slopes * scales.units
         # Rates that change little, as beside a zero of higher order, count as others do.
         most = np.abs(slopes).max(axis=2, keepdims=True)
@@ -90,7 +94,7 @@ def reached(
         with np.errstate(over="ignore"):
             # A step without end is not a number further on.
             wanted = rates / most[..., 0]
-        step = -np.einsum("sij,sj->si", np.linalg.pinv(slopes / most, rcond=_SINGULAR), wanted) * scales.units
+        step = -_solved(slopes / most, wanted) * scales.units
         length = np.abs(step / alike).max(axis=1, keepdims=True)
         # Linear rates lead however far.
         linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
@@ -100,13 +104,44 @@ def reached(
             share = _descent(system, (states, rates, step), share)
         moved = step * share
         states, left = states + moved, step - moved
-        if (np.abs(step) <= 1e-15 * (scales.sizes + np.abs(states))).all():
-            break
+        stands = (np.abs(step) <= 1e-15 * (scales.sizes + np.abs(states))).all(axis=1)
+        still.append((states[stands], step[stands], begun[stands]))
+        states, step, longest, left, moved = (each[~stands] for each in (states, step, longest, left, moved))
+        begun = begun[~stands]
+    ends = [*still, (states, step[: len(states)], begun)]
+    states, step, begun = (np.concatenate(each) for each in zip(*ends, strict=True))
+    order = np.argsort(begun)
+    states, step, begun = states[order], step[order], begun[order]
     rates, slopes = rates_and_slopes(system, states)
     made_of = np.einsum("sij,sj->si", np.abs(slopes), np.abs(states) + np.abs(step))
     settled = (np.abs(step) <= SAME * (scales.sizes + np.abs(states))).all(axis=1)
     kept: NDArray[np.bool_] = settled & (np.abs(rates) <= _BALANCED * made_of + scales.least).all(axis=1)
     return np.concatenate([states[kept], *at_kinks]), np.concatenate([begun[kept], *from_there])
+
+
+def _solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least solutions (S, m) of linear equations: by singular values only of those matrices that may be singular."""
+    solved: NDArray[np.float64] = np.empty(wanted.shape)
+    with np.errstate(all="ignore"):
+        inverse = _inverses(slopes)
+        # The product of the largest singular values of a matrix and of its inverse is at most this.
+        condition = np.sqrt((slopes**2).sum(axis=(1, 2))) * np.sqrt((inverse**2).sum(axis=(1, 2)))
+    regular = condition * _REGULAR < 1.0
+    solved[regular] = np.einsum("sij,sj->si", inverse[regular], wanted[regular])
+    by_values = np.linalg.pinv(slopes[~regular], rcond=_SINGULAR)
+    solved[~regular] = np.einsum("sij,sj->si", by_values, wanted[~regular])
+    return solved
+
+
+def _inverses(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverses of matrices (S, m, m); not numbers where one has none."""
+    try:
+        return np.linalg.inv(slopes)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(slopes) == 0.0
+        inverse = np.full(slopes.shape, np.nan)
+        inverse[~singular] = np.linalg.inv(slopes[~singular])
+        return inverse
 
 
 def _descent(

@@ -28,6 +28,7 @@ SAME = 1e-8
 #: Starts of a search for equilibria, and of one of many coordinates.
 _MOST_STARTS = 2000
 _MOST_OF_MANY = 256
+_ALONG_AN_AXIS = 400
 #: Starts of which one is this many times as large as another are looked at by themselves: its rounding is no measure of
 #: what that one finds.
 _ALIKE = 1e3
@@ -39,13 +40,21 @@ _LOST = 1e-14
 
 
 def starts_of_a_search(n: int) -> NDArray[np.float64]:
-    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
+    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer.
+
+    Beside the grid more of them along each axis, on which those of symmetric systems are, as close to each other as two
+    of Lagrange's points on either side of a planet.
+    """
     side = max(2, int(_MOST_STARTS ** (1.0 / n)))
     if 2**n <= _MOST_OF_MANY:
+        aside = 1e-3 * np.arange(1, n + 1)
+        along = np.tile(aside, (n, _ALONG_AN_AXIS, 1))
+        for axis in range(n):
+            along[axis, :, axis] = np.linspace(-np.pi, np.pi, _ALONG_AN_AXIS)
         line = np.linspace(-np.pi, np.pi, min(side, 25))
         # Not on the symmetry lines themselves, where Newton's method may be caught.
-        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
-        return np.stack([axis.ravel() for axis in grid], axis=1)
+        grid = np.meshgrid(*[line + by for by in aside], indexing="ij")
+        return np.concatenate([np.stack([axis.ravel() for axis in grid], axis=1), *along])
     # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
     root = 2.0
     for _ in range(64):
