@@ -68,7 +68,7 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
 
 
 def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give states (S, 2n) at places (S, n) with the momenta of rest: zero, unless the coordinates rotate or the like."""
+    """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like."""
     n = places.shape[1]
     states = np.concatenate([places, np.zeros_like(places)], axis=1)
     for _ in range(_STEPS_TO_REST):

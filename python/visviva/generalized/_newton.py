@@ -135,13 +135,13 @@ def _solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray
 
 def _inverses(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Inverses of matrices (S, m, m); not numbers where one has none."""
+    inverse: NDArray[np.float64] = np.full(slopes.shape, np.nan)
     try:
-        return np.linalg.inv(slopes)
+        inverse = np.linalg.inv(slopes)
     except np.linalg.LinAlgError:
-        singular = np.linalg.det(slopes) == 0.0
-        inverse = np.full(slopes.shape, np.nan)
-        inverse[~singular] = np.linalg.inv(slopes[~singular])
-        return inverse
+        regular = np.linalg.det(slopes) != 0.0
+        inverse[regular] = np.linalg.inv(slopes[regular])
+    return inverse
 
 
 def _descent(
