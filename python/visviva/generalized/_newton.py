@@ -137,7 +137,7 @@ def _inverses(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Inverses of matrices (S, m, m); not numbers where one has none."""
     inverse: NDArray[np.float64] = np.full(slopes.shape, np.nan)
     try:
-        inverse = np.linalg.inv(slopes)
+        inverse[:] = np.linalg.inv(slopes)
     except np.linalg.LinAlgError:
         regular = np.linalg.det(slopes) != 0.0
         inverse[regular] = np.linalg.inv(slopes[regular])
