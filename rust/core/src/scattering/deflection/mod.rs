@@ -145,11 +145,8 @@ impl Deflector {
         }
         let closed = Closed::of(potential.as_ref());
         let profile = closed.is_none_or(Closed::angle_only).then(|| Profile::new(potential));
-        if profile.as_ref().is_some_and(|profile| !profile.vanishes()) {
-            return Err(Error::invalid(
-                "potential",
-                "expected one that goes to 0 as r goes to infinity; nothing scatters off one that does not",
-            ));
+        if let Some(profile) = &profile {
+            profile.check_far()?;
         }
         Ok(Self { profile, closed, tolerance: tolerance.max(FINEST), refined: true })
     }

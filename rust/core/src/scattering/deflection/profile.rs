@@ -305,11 +305,6 @@ impl Profile {
     pub(super) fn rim(&self) -> Option<Rim> {
         self.rim
     }
-    /// Whether V goes to zero far out.
-    pub(super) fn vanishes(&self) -> bool {
-        let far = self.grid.value[POINTS - 1].abs();
-        far == 0.0 || far < 0.99 * self.grid.beyond(1.0, 0)
-    }
     /// What a delay is where V falls no faster than 1/r: never over.
     pub(super) fn endless_delay(&self) -> f64 {
         self.endless_delay

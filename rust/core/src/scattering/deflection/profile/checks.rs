@@ -3,12 +3,46 @@
 //! The one idea: no number comes of what is not known. Each question costs a comparison; words are made when it is refused.
 
 use super::super::Deflection;
+use super::super::grid::POINTS;
 use super::Profile;
-use crate::numerics::power_of_two::scale;
+use crate::numerics::power_of_two::{power_of_two, scale};
 use crate::words::number;
 use crate::{Error, Result};
 
+/// Of |V| farther out, what is less than this part of it falls.
+const FALLS: f64 = 0.99;
+/// What V comes to far out is nothing if it is this part of what it is nearer, as sums leave it that end in zero.
+const ROUNDING: f64 = 1.0 / (1_u64 << 50) as f64;
+/// Powers of two beyond the grid, the farthest first: squares and higher powers in V may leave the range of numbers.
+const BEYOND: [i32; 6] = [900, 450, 300, 200, 150, 100];
+
 impl Profile {
+    /// Refuses what does not go to zero far out.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `potential`, with what V goes to if it settles.
+    pub(in super::super) fn check_far(&self) -> Result<()> {
+        let (last, nearby) = (self.grid.value[POINTS - 1].abs(), self.grid.beyond(1.0, 0));
+        if last <= ROUNDING * nearby || (self.domain[1] < f64::INFINITY && last < FALLS * nearby) {
+            return Ok(());
+        }
+        let mut beyond = BEYOND.iter().map(|&power| self.value(power_of_two(power)));
+        let farther = beyond.find(|value| value.is_finite()).unwrap_or(0.0);
+        if last < FALLS * nearby && farther.abs() < FALLS * last {
+            return Ok(());
+        }
+        let settles = farther.abs() * FALLS <= last && last * FALLS <= farther.abs();
+        let advice = if settles {
+            format!("this one goes to {}; subtract that", number(scale(farther, self.energy)))
+        } else {
+            "nothing scatters off one that does not".to_owned()
+        };
+        Err(Error::invalid(
+            "potential",
+            format!("expected one that goes to 0 as r goes to infinity; {advice}"),
+        ))
+    }
+
     /// Refuses a table that ends before V does.
     ///
     /// # Errors
