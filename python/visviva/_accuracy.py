@@ -198,7 +198,7 @@ def _warn_of_turn(result: dict[str, Any], *, ensemble: bool) -> None:
 
 def _advice(result: dict[str, Any], error: float, dt: float | None, order: int, others: tuple[str, str]) -> str:
     if dt is None:
-        return "the tolerance does not resolve this motion; try a smaller rtol (the default is 1e-9), and no atol"
+        return "the tolerance does not resolve this motion; try a smaller rtol, and no atol"
     # The error goes as dt to the power of the order, if not quite yet where it is this large: half of that step. Where
     # it has grown to the energy itself it tells little: then as for a low order.
     power = 1.0 / (order if error < _UNRESOLVED else min(order, _LOW_ORDER))

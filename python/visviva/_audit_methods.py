@@ -96,7 +96,12 @@ def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> 
 
 @known_keywords
 def reversal(
-    scene: Scene, t: float, *, method: MethodName | Method = "auto", dt: float | None = None, rtol: float = 1e-9
+    scene: Scene,
+    t: float,
+    *,
+    method: MethodName | Method = "auto",
+    dt: float | None = None,
+    rtol: float | None = None,
 ) -> float:
     """Distance from the start after a run to ``t``, a reversal of all velocities, and a run back.
 

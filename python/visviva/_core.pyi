@@ -56,6 +56,7 @@ class _Request(_Scene):
     dt: float | None
     time_transformation: str | None
     rtol: float
+    rtol_given: bool
     atol: tuple[list[float] | None, list[float] | None] | None
     max_step: float | None
     max_steps: int | None

@@ -63,6 +63,8 @@ class Parameter:
             return None
         if self.kind == "choice":
             return self.choices[int(self.default)]
+        if self.kind == "indices":
+            return ()
         return (self.default,) * 3 if self.kind in _VECTORS else self.default
 
     def check(self, value: Any) -> Any:
@@ -111,7 +113,10 @@ class Parameter:
         if any(isinstance(each, str) for each in value):
             # Names wait for the scene to say which bodies they are.
             return tuple(each if isinstance(each, str) else whole_number(self.name, each, low=0) for each in value)
-        array = np.asarray(value)
+        array = np.asarray(value, dtype=np.int64 if len(value) == 0 and self.default is not None else None)
+        if array.size == 0 and self.default is not None:
+            all_of_them: NDArray[np.int64] = _frozen(array, value)
+            return all_of_them
         if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
             raise InvalidInput(
                 self.name,

@@ -112,8 +112,9 @@ def _on_each(force: Force) -> None:
     """Refuse what is no force, or acts between bodies."""
     if not isinstance(force, Force):
         raise InvalidInput("force", f"expected a force, got {type(force).__name__}")
-    # One that lists bodies acts between them, and what it calls them only a scene knows.
-    if any(parameter.kind == "indices" for parameter in force._parameters) or _core.acts_between(force._to_core()):
+    # One that has to list bodies acts between them, and what it calls them only a scene knows.
+    lists = any(parameter.kind == "indices" and parameter.default is None for parameter in force._parameters)
+    if lists or _core.acts_between(force._to_core()):
         raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
 
 

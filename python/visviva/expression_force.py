@@ -6,6 +6,7 @@ once, beside any other force.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -21,7 +22,12 @@ from visviva.generalized._symbolic import Symbols, sympy, time
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+
     from visviva.typing import Formula, ParameterValues, SymbolicExpression
+
+    _Components = Sequence[SymbolicExpression] | Callable[..., Sequence[SymbolicExpression]]
+    _Argument = Literal["potential", "force", "acceleration"]
 
 __all__ = ["ExpressionForce", "check_units", "formula_of", "parameter_names"]
 
@@ -34,10 +40,12 @@ _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and makes one)
     *,
     potential: Formula | None = None,
-    force: Sequence[SymbolicExpression] | Callable[..., Sequence[SymbolicExpression]] | None = None,
+    force: _Components | None = None,
+    acceleration: _Components | None = None,
     parameters: ParameterValues | None = None,
+    bodies: int | str | Sequence[int | str] | NDArray[np.int64] | None = None,
 ) -> ExpressedForce:
-    """A force on every body of a scene, from an expression, at the speed of the forces that visviva has.
+    """A force on every body of a scene, or on some, from an expression, at the speed of the forces that visviva has.
 
     Parameters
     ----------
@@ -45,8 +53,12 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
         The potential energy V of a body, of its place and the time. The force is −∇V, derived exactly.
     force : sequence of three expressions, or callable that gives three, optional
         The components of the force on a body, of its place, its velocity and the time.
+    acceleration : sequence of three expressions, or callable that gives three, optional
+        Those of the force for each unit of mass, which acts on massless bodies, too.
     parameters : mapping of symbol or str to float, optional
         The values of what else stands in the expressions. Copies of an ensemble may have their own, by these names.
+    bodies : int or str, or array_like of them, shape (M,), optional
+        The bodies on which it acts, by index or name; all if not given.
 
     Returns
     -------
@@ -56,8 +68,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     Raises
     ------
     visviva.InvalidInput
-        If not one of `potential` and `force` is given; for a symbol without a value; for a potential that depends on
-        velocities; for what the core does not know, with what it knows.
+        If not one of `potential`, `force` and `acceleration` is given; for a symbol without a value; for a potential
+        that depends on velocities; for what the core does not know, with what it knows.
 
     Notes
     -----
@@ -82,43 +94,57 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     >>> out = scene.run(t=2.0, rtol=1e-12)
     >>> print(f"{out.position[-1, 0, 2]:.6f}", bool(np.ptp(out.energy) < 1e-11))
     -2.000000 True
+
+    A drag on the planet alone, however massless it is:
+
+    >>> thin = vv.ExpressionForce(acceleration=lambda r, v, t: [-0.01 * each for each in v], bodies="planet")
+    >>> bodies = vv.Particles([1.0, 0.0], [[0, 0, 0], [1.0, 0, 0]], [[0, 0, 0], [0, 1.0, 0]], names=["star", "planet"])
+    >>> out = vv.Scene(bodies, vv.Gravity(G=1.0), thin).run(t=10.0)
+    >>> print(f"{np.linalg.norm(out.position[-1, 1]):.3f}")
+    0.806
     """
-    if (potential is None) == (force is None):
-        raise InvalidInput(
-            "potential", f"expected one of potential and force, got {'neither' if force is None else 'both'}"
-        )
+    given: dict[_Argument, Any] = {"potential": potential, "force": force, "acceleration": acceleration}
+    named = [name for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        came = " and ".join(named) or "none of them"
+        raise InvalidInput("potential", f"expected one of potential, force and acceleration, got {came}")
     names, values = _expression_table.checked_parameters(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
-    argument: Literal["potential", "force"] = "potential" if force is None else "force"
-    roots = (potential,) if force is None else _components(force, names)
+    if bodies is not None and np.size(bodies) == 0:
+        raise InvalidInput("bodies", "expected those on which it acts, got none of them; leave it out for all")
+    argument = named[0]
+    components = given[argument]
+    roots = (components,) if argument == "potential" else _components(argument, components, names)
     found = [_node(argument, root, nodes, names) for root in roots]
-    expressed = ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
-    _core.acts_between(expressed._to_core())  # which compiles it: whatever is wrong with it is refused here
+    table = _expression_table.table(nodes, found, names)
+    expressed = ExpressedForce(argument, table, values, *_AXES, bodies=() if bodies is None else bodies)
+    # Which compiles it: whatever is wrong with it is refused here. What bodies are called only a scene knows.
+    _core.acts_between(replace(expressed, bodies=())._to_core())
     return expressed
 
 
-def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
+def _components(argument: str, given: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
-    if callable(force):
-        check_call("force", force, ("position", "velocity", "t"), names)
-        return tuple(_one_of(not_compiled(force), c) for c in range(3))
-    if isinstance(force, str) or not hasattr(force, "__len__") or len(force) != 3:
-        raise InvalidInput("force", f"expected three components, or a function that gives them, got {force!r}")
-    return tuple(force)
+    if callable(given):
+        check_call(argument, given, ("position", "velocity", "t"), names)
+        return tuple(_one_of(argument, not_compiled(given), c) for c in range(3))
+    if isinstance(given, str) or not hasattr(given, "__len__") or len(given) != 3:
+        raise InvalidInput(argument, f"expected three components, or a function that gives them, got {given!r}")
+    return tuple(given)
 
 
-def _one_of(force: Callable[..., Any], which: int) -> Callable[..., Any]:
+def _one_of(argument: str, function: Callable[..., Any], which: int) -> Callable[..., Any]:
     # Without a name of its own among the arguments: those of parameters may be any.
-    return lambda *state, **own: _component(force(*state, **own), which)
+    return lambda *state, **own: _component(argument, function(*state, **own), which)
 
 
-def _component(components: Any, which: int) -> Any:
+def _component(argument: str, components: Any, which: int) -> Any:
     try:
         three = tuple(components)
     except TypeError:
         three = ()
     if len(three) != 3:
-        raise InvalidInput("force", f"expected three components of the function, got {components!r}")
+        raise InvalidInput(argument, f"expected three components of the function, got {components!r}")
     return three[which]
 
 
@@ -169,6 +195,8 @@ def formula_of(force: ExpressedForce) -> str:
     usual: dict[str, Any] = dict(zip(("first", "second", "third"), _AXES, strict=True))
     usual |= {"origin": (0.0, 0.0, 0.0), "length": 1.0, "mass": 1.0, "time": 1.0}
     own = {name: getattr(force, name) for name in usual if getattr(force, name) != usual[name]}
+    if not isinstance(force.bodies, np.ndarray) or len(force.bodies):
+        own["bodies"] = np.asarray(force.bodies).tolist()
     expressions = f"({', '.join(written)})" if len(written) > 1 else written[0]
     further = [f"{name}={value!r}" for name, value in (values | own).items()]
     return f"ExpressedForce({', '.join([f'{force.gives}={expressions}', *further])})"

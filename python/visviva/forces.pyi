@@ -178,7 +178,7 @@ class PairPotential(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class ExpressedForce(Force):
-    gives: Literal["force", "potential"]
+    gives: Literal["force", "potential", "acceleration"]
     nodes: NDArray[np.float64]
     values: NDArray[np.float64]
     first: tuple[float, float, float]
@@ -188,9 +188,10 @@ class ExpressedForce(Force):
     length: float
     mass: float
     time: float
+    bodies: int | str | tuple[int | str, ...] | NDArray[np.int64]
     def __init__(
         self,
-        gives: Literal["force", "potential"],
+        gives: Literal["force", "potential", "acceleration"],
         nodes: ArrayLike,
         values: ArrayLike,
         first: ArrayLike,
@@ -200,6 +201,7 @@ class ExpressedForce(Force):
         length: float = 1.0,
         mass: float = 1.0,
         time: float = 1.0,
+        bodies: ArrayLike = 0.0,
     ) -> None: ...
 
 def force_from_core(description: dict[str, Any]) -> Force: ...

@@ -151,6 +151,7 @@ def _sent_to_core(check: Callable[[str, object], object]) -> dict[str, Any]:
     return {"check": check}
 
 
+# The relative tolerance where nothing is said, of a method that somebody has named; `auto` holds steps to less.
 _RTOL = 1e-9
 
 
@@ -172,7 +173,7 @@ class PlanRequest:
     method: MethodName | Method = field(default="auto", metadata=_sent_to_core(_method))
     dt: float | None = field(default=None, metadata=_sent_to_core(_or_none(_step)))
     time_transformation: TransformationName | None = field(default=None, metadata=_sent_to_core(_or_none(_word)))
-    rtol: float = field(default=_RTOL, metadata=_sent_to_core(number))
+    rtol: float | None = field(default=None, metadata=_sent_to_core(_or_none(number)))
     atol: ArrayLike | Mapping[str, ArrayLike] | None = field(
         default=None, metadata=_sent_to_core(_or_none(_tolerances))
     )
@@ -198,7 +199,10 @@ class PlanRequest:
             asked[name] = ready if value is default else check(name, value)
         if prepared["rigid"] is not None and self.record is _RECORDED:
             asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
-        if self.rtol != _RTOL and asked["method"] in fixed_steps():
+        asked["rtol_given"] = self.rtol is not None
+        if self.rtol is None:
+            asked["rtol"] = _RTOL
+        elif asked["method"] in fixed_steps():
             raise InvalidInput(
                 "rtol",
                 f"{asked['method']} has a fixed step, dt, which nothing else changes: expected none, got {self.rtol}; "

@@ -64,8 +64,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
             alone with those that have mass. A state between steps costs four of them. Run on from ``final``, `dt` is
             again the first step.
         rtol : float, optional
-            Relative tolerance of an adaptive method, at least 2.3e-14; if not given 1e-9. A fixed-step method refuses
-            it.
+            Relative tolerance of an adaptive method, at least 2.3e-14. If not given 1e-9 of a method that is named, and
+            1e-12 of what `auto` chooses, whose order is so high that three more digits cost little. A fixed-step method
+            refuses it.
         atol : float, array_like of shape (N,), or dict, optional
             Absolute tolerance of an adaptive method, of all bodies or of each; ``{"position": ..., "velocity": ...}``
             has one for each kind. By default, and for a kind left out, `rtol` times the size of the kind at the start.

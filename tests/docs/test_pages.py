@@ -5,6 +5,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import visviva as vv
@@ -64,13 +65,19 @@ def test_every_error_and_status_is_on_the_page_of_errors() -> None:
 
 
 def test_tolerances_that_are_told_are_those_of_the_signatures() -> None:
-    rows = re.findall(r"(?m)^\| (`.*`.*?) \| (1e-\d+)", (DOCS / "which-method.md").read_text(encoding="utf-8"))
-    told = {rtol: where for where, rtol in rows}
-    for name, run in (("scene.run", vv.Scene.run), ("run` of a Lagrangian", vv.Lagrangian.run)):
-        usual = f"{inspect.signature(run).parameters['rtol'].default:.0e}".replace("e-0", "e-")
-        assert name in told[usual]
-        assert f"if not given {usual}." in " ".join((inspect.getdoc(run) or "").split())
-    # Those of solve_ivp by what they do: the default is None.
+    text = (DOCS / "which-method.md").read_text(encoding="utf-8")
+    told = dict(re.findall(r"(?m)^\| (.*`.*`.*?) \| (1e-\d+)", text))
+    usual = f"{inspect.signature(vv.Lagrangian.run).parameters['rtol'].default:.0e}"
+    assert {usual} == {rtol for where, rtol in told.items() if "of a Lagrangian" in where}
+    assert f"if not given {usual}." in " ".join((inspect.getdoc(vv.Lagrangian.run) or "").split())
+    # Those of scenes and of solve_ivp by what they do: the default is None.
+    scene = vv.problems.figure_eight().scene
+    for where, how in (("named", {"method": "dop853"}), ("by `auto`", {})):
+        (rtol,) = {rtol for row, rtol in told.items() if where in row}
+        left_out, given = (scene.run(t=1.0, **how, **tolerance) for tolerance in ({}, {"rtol": float(rtol)}))
+        np.testing.assert_array_equal(left_out.position, given.position)
+        assert rtol in " ".join((inspect.getdoc(vv.Scene.run) or "").split())
+    told = {rtol: where for where, rtol in told.items()}
     span, start = (0.0, 10.0), [1.0]
     left_out, given = (vv.solve_ivp(lambda _, y: -y, span, start, **how) for how in ({}, {"rtol": 1e-3, "atol": 1e-6}))
     assert "solve_ivp" in told["1e-3"]

@@ -175,8 +175,12 @@ def test_what_leaves_the_domain_ends_there_with_what_was_computed() -> None:
 @pytest.mark.parametrize(
     ("make", "argument", "message"),
     [
-        (vv.ExpressionForce, "potential", "one of potential and force"),
-        (lambda: vv.ExpressionForce(potential=x, force=[x, y, z]), "potential", "one of potential and force"),
+        (vv.ExpressionForce, "potential", "one of potential, force and acceleration"),
+        (
+            lambda: vv.ExpressionForce(potential=x, force=[x, y, z]),
+            "potential",
+            "one of potential, force and acceleration",
+        ),
         (lambda: vv.ExpressionForce(potential=k * x), "potential", "free symbol 'k' has no value"),
         (lambda: vv.ExpressionForce(potential=vx * x), "potential", "one of velocities; pass the force instead"),
         (lambda: vv.ExpressionForce(potential="x**2"), "potential", "expected a number|got the text|number"),

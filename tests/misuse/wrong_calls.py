@@ -44,7 +44,7 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
         {
             "t": ("end", NAN, [1.0, 0.5, 2.0], [], [[0.0, 1.0]], None),
             "method": ("leap_frog", "RK45", 3, None),
-            "rtol": (0.0, -1.0, 1e-18, NAN, "small", None),
+            "rtol": (0.0, -1.0, 1e-18, NAN, "small"),
             "record": ("speed", ("position", "speed"), 3, None),
             "events": ("apsis", 1, [1]),
             "threads": (0, -2, 1.5, "two"),

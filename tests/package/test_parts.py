@@ -176,7 +176,7 @@ def test_events_are_refused_by_name() -> None:
         ({"t": [1.0, np.nan]}, "t"),
         ({"t": [1.0, [2.0]]}, "t"),
         ({"t": 1.0, "dt": "0.1"}, "dt"),
-        ({"t": 1.0, "rtol": None}, "rtol"),
+        ({"t": 1.0, "rtol": "1e-9"}, "rtol"),
         ({"t": 1.0, "atol": 1j}, "atol"),
         ({"t": 1.0, "max_step": [1.0, 2.0]}, "max_step"),
         ({"t": 1.0, "max_steps": 1.5}, "max_steps"),

@@ -25,6 +25,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         // No step is taken; one that the time would round away is refused.
         dt: Some(scene.t0.abs().max(1.0)),
         rtol: 1e-9,
+        rtol_given: true,
         atol: None,
         max_step: None,
         first_step: None,

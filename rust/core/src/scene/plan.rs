@@ -164,6 +164,7 @@ impl Plan {
         let held_to = with_step.as_ref().filter(chooses_all).map(|request| turning::held_to(request.rtol));
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
+        let held_to = held_to.or_else(|| tolerances::of_itself(automatic, request));
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = acting(scene, &scene.forces);
         refusals::check_method(method, &forces)?;

@@ -87,6 +87,8 @@ pub struct Request {
     pub time_transformation: Option<String>,
     /// Relative tolerance of an adaptive method.
     pub rtol: f64,
+    /// Whether somebody has asked for that.
+    pub rtol_given: bool,
     /// Absolute tolerances; `None` is scale-free.
     pub atol: Option<AbsoluteTolerances>,
     /// The longest step of an adaptive method.

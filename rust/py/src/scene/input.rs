@@ -45,6 +45,7 @@ pub(crate) struct Asked<'py> {
     dt: Option<f64>,
     time_transformation: Option<String>,
     rtol: f64,
+    rtol_given: bool,
     atol: Option<(OneOrEach, OneOrEach)>,
     max_step: Option<f64>,
     max_steps: Option<i64>,
@@ -132,7 +133,9 @@ impl Asked<'_> {
         };
         let mut functions = Functions::default();
         let events = events(&self.events, particles, &mut functions)?;
-        let Self { method, dt, time_transformation, rtol, atol, max_step, max_steps, record, .. } = self;
+        let Self {
+            method, dt, time_transformation, rtol, rtol_given, atol, max_step, max_steps, record, ..
+        } = self;
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
@@ -159,6 +162,7 @@ impl Asked<'_> {
             dt,
             time_transformation,
             rtol,
+            rtol_given,
             atol,
             max_step,
             first_step: None,

@@ -1,6 +1,6 @@
 //! From a table of nodes to what runs: derivatives, codes, and the series if there is one.
 
-use super::{Expressions, VARIABLES};
+use super::{Expressions, Gives, VARIABLES};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
 use crate::expressions::graph::{Graph, Id, Node};
@@ -11,7 +11,8 @@ use crate::ode::system::Needs;
 use std::sync::Arc;
 
 /// Reads the components of a force, or a potential energy.
-pub(super) fn read(potential: bool, nodes: &[f64], parameters: &[f64]) -> Result<Expressions> {
+pub(super) fn read(gives: Gives, nodes: &[f64], parameters: &[f64]) -> Result<Expressions> {
+    let potential = gives == Gives::Potential;
     let wanted = if potential { 1 } else { 3 };
     let (graph, roots) = table::read(
         nodes,
@@ -19,7 +20,7 @@ pub(super) fn read(potential: bool, nodes: &[f64], parameters: &[f64]) -> Result
         Variables { count: VARIABLES, unit: 1.0 },
         Parameters::Kept(parameters.len()),
     )?;
-    let made_from = core::iter::once(u64::from(potential)).chain(nodes.iter().map(|x| x.to_bits())).collect();
+    let made_from = core::iter::once(gives as u64).chain(nodes.iter().map(|x| x.to_bits())).collect();
     Ok(Expressions { made_from, ..expressions(potential, graph, roots, parameters)? })
 }
 

@@ -1,6 +1,6 @@
 //! The kernel of an expression: eight bodies at once from the lanes to its coordinates, through its code, and back.
 
-use super::{ExpressionForce, Place, VARIABLES};
+use super::{ExpressionForce, Gives, VARIABLES};
 use crate::error::Result;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
@@ -17,9 +17,6 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::tiered;
 
-/// The exponents of length, mass and time in a force.
-pub(super) const FORCE: [i32; 3] = [1, 1, -2];
-
 /// The way from the units and axes of the integration to those of the expressions, and back.
 #[derive(Clone, Debug)]
 struct Way {
@@ -33,15 +30,17 @@ struct Way {
     /// What is taken away from places and added to times, then.
     origin: [f64; 3],
     t0: f64,
-    /// One over the mass of each body, times the unit of force; none where there is no body.
+    /// The unit of acceleration, or that of force over the mass of each body; none where there is no body, or none that is
+    /// acted on.
     force: Vec<Lanes>,
 }
 
 impl Way {
-    fn new(place: &Place, context: &Context<'_>) -> Self {
-        let [length, mass, time] = place.scales;
+    fn new(term: &ExpressionForce, context: &Context<'_>) -> Self {
+        let place = &term.place;
+        let [length, _, time] = place.scales;
         let units = context.units;
-        let force = units.take(mass * length / (time * time), FORCE);
+        let unit = units.take(place.unit(term.gives), term.gives.dimension());
         Self {
             shape: context.shape,
             axes: (place.axes != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).then_some(place.axes),
@@ -50,7 +49,11 @@ impl Way {
             time: scale(1.0 / time, units.time),
             origin: place.origin.map(|x| x / length),
             t0: context.t0 / time,
-            force: context.per_body(|system, slot| force / system.mass[slot]),
+            force: context.per_body(|system, slot| match term.gives {
+                _ if !term.acts_on(system.bodies[slot]) => 0.0,
+                Gives::Acceleration => unit,
+                _ => unit / system.mass[slot],
+            }),
         }
     }
 }
@@ -67,7 +70,7 @@ impl Kernel {
     pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Self {
         let machine = |parameters: Vec<Lanes>| Machine::new(term.expressions.force.clone(), &parameters);
         Self {
-            way: Way::new(&term.place, context),
+            way: Way::new(term, context),
             machines: parameters(term, context).into_iter().map(machine).collect(),
             needs: term.expressions.needs,
         }
@@ -176,7 +179,7 @@ pub(super) struct Expanded {
 impl Expanded {
     pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Option<Self> {
         let series = term.expressions.series.as_ref()?;
-        let way = Way::new(&term.place, context);
+        let way = Way::new(term, context);
         let blocks = parameters(term, context);
         let of_block = way.shape.rows / blocks.len();
         let row = |parameters: &Vec<Lanes>| vec![Expansion::new(series.clone(), parameters); of_block];

@@ -10,7 +10,7 @@ use super::Force;
 use super::bodies::{Of, PreciseBodies};
 use super::context::Context;
 use super::series::Series;
-use super::term::{Conserves, ForceDeclaration, ForceTerm};
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Machine, series};
 use crate::numerics::double_double::DoubleDouble;
@@ -20,7 +20,7 @@ use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
-use crate::units::Units;
+use crate::units::{Dimension, Units};
 use kernel::{Expanded, Kernel};
 use std::sync::Arc;
 
@@ -31,12 +31,12 @@ const VARIABLES: usize = 6;
 pub static DECLARATION: ForceDeclaration = Declaration {
     name: "expressed_force",
     class_name: "ExpressedForce",
-    summary: "A force of one's own on every body, as `visviva.ExpressionForce` makes it",
-    formula: "F of x, y, z, vx, vy, vz and t, or V(x, y, z, t) with F = −∇V",
+    summary: "A force of one's own on every body, or on some, as `visviva.ExpressionForce` makes it",
+    formula: "F or F/m of x, y, z, vx, vy, vz and t, or V(x, y, z, t) with F = −∇V",
     notes: "The place, the velocity and the time in the expressions are those of a body from `origin`, along the axes \
             `first`, `second` and `third`, in the units `length`, `mass` and `time`: so a scene that is shifted, turned or \
-            rescaled takes the force along. It acts by its force, so every mass must be positive. A potential energy without \
-            time in it is conserved with the kinetic energy; one with time is not counted.",
+            rescaled takes the force along. What acts by a force, or a potential energy, needs bodies with a mass. A potential \
+            energy without time in it is conserved with the kinetic energy; one with time is not counted.",
     source: "A. Griewank & A. Walther, Evaluating Derivatives (2008), for the derivatives",
     example: ">>> spring = vv.ExpressionForce(potential=lambda r, v, t, k: k * r[0] ** 2 / 2, parameters={\"k\": 4.0})\n\
               >>> ion = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), spring)\n\
@@ -45,7 +45,11 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     at_rest: "field",
     one_way: "what velocities and time do in it is not known",
     parameters: &[
-        Parameter::new("gives", Kind::Choice(&["force", "potential"]), "What the expressions give"),
+        Parameter::new(
+            "gives",
+            Kind::Choice(&["force", "potential", "acceleration"]),
+            "What the expressions give",
+        ),
         Parameter::new(
             "nodes",
             Kind::Table(Sign::Any),
@@ -63,13 +67,17 @@ pub static DECLARATION: ForceDeclaration = Declaration {
         Parameter::positive("length", [1, 0, 0], "The unit of length in the expressions").or(1.0),
         Parameter::positive("mass", [0, 1, 0], "The unit of mass in them").or(1.0),
         Parameter::positive("time", [0, 0, 1], "The unit of time in them").or(1.0),
+        Parameter::new("bodies", Kind::Indices, "The bodies on which it acts, or none for all").or(0.0),
     ],
     make: |values| match values {
-        [gives, nodes, parameters, first, second, third, origin, length, mass, time] => {
+        [gives, nodes, parameters, first, second, third, origin, length, mass, time, bodies] => {
             let axes = [first.vector(), second.vector(), third.vector()];
             check_axes(&axes)?;
-            let expressions = compiled::read(gives.word() == "potential", nodes.table(), parameters.table())?;
+            let gives = Gives::named(gives.word());
+            let expressions = compiled::read(gives, nodes.table(), parameters.table())?;
             Ok(Arc::new(ExpressionForce {
+                gives,
+                bodies: bodies.indices(),
                 expressions,
                 place: Place {
                     axes,
@@ -78,7 +86,7 @@ pub static DECLARATION: ForceDeclaration = Declaration {
                 },
             }))
         }
-        _ => Err(Error::Internal("ExpressedForce takes ten parameters".to_owned())),
+        _ => Err(Error::Internal("ExpressedForce takes eleven parameters".to_owned())),
     },
 };
 
@@ -97,6 +105,29 @@ fn check_axes(axes: &[[f64; 3]; 3]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// What expressions give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Gives {
+    Force,
+    Potential,
+    Acceleration,
+}
+
+impl Gives {
+    fn named(word: &str) -> Self {
+        match word {
+            "potential" => Self::Potential,
+            "acceleration" => Self::Acceleration,
+            _ => Self::Force,
+        }
+    }
+
+    /// The exponents of length, mass and time in what moves a body.
+    fn dimension(self) -> Dimension {
+        if self == Self::Acceleration { [1, 0, -2] } else { [1, 1, -2] }
+    }
 }
 
 /// Expressions as they run.
@@ -125,6 +156,9 @@ struct Place {
 
 #[derive(Debug)]
 struct ExpressionForce {
+    gives: Gives,
+    /// Those on which it acts, by their places in the scene; none for all.
+    bodies: Vec<usize>,
     expressions: Expressions,
     place: Place,
 }
@@ -143,13 +177,26 @@ impl Place {
         found
     }
 
-    /// A force of the expressions along the scene's axes, in its units.
-    fn global(&self, force: &[f64; 3]) -> [f64; 3] {
+    /// The unit of what moves a body.
+    fn unit(&self, gives: Gives) -> f64 {
         let [length, mass, time] = self.scales;
+        if gives == Gives::Acceleration { length / (time * time) } else { mass * length / (time * time) }
+    }
+
+    /// What moves a body along the scene's axes, in its units.
+    fn global(&self, gives: Gives, pull: &[f64; 3]) -> [f64; 3] {
+        let unit = self.unit(gives);
         core::array::from_fn(|c| {
-            let along: f64 = (0..3).map(|axis| self.axes[axis][c] * force[axis]).sum();
-            along * (mass * length / (time * time))
+            let along: f64 = (0..3).map(|axis| self.axes[axis][c] * pull[axis]).sum();
+            along * unit
         })
+    }
+}
+
+impl ExpressionForce {
+    /// Whether it acts on a body of the scene.
+    fn acts_on(&self, body: usize) -> bool {
+        self.bodies.is_empty() || self.bodies.contains(&body)
     }
 }
 
@@ -181,7 +228,7 @@ impl ForceTerm for ExpressionForce {
         let [length, mass, time] = self.place.scales;
         let mut force = Machine::new(force.clone(), parameters);
         let mut potential = potential.as_ref().map(|code| Machine::new(code.clone(), parameters));
-        for body in 0..bodies.len() {
+        for body in (0..bodies.len()).filter(|&body| self.acts_on(body)) {
             let place = bodies.vector(Of::Position, body);
             let whole = |value: DoubleDouble, unit: i32| scale(value.to_f64(), unit);
             let position = place.map(|x| whole(x, bodies.units.length));
@@ -194,16 +241,32 @@ impl ForceTerm for ExpressionForce {
             }
             let mut pull = [0.0; 3];
             force.evaluate(0.0, &state, &mut pull);
-            for (place, pull) in place.iter().zip(self.place.global(&pull)) {
-                work = work.plus(Scaled::new(*place, bodies.units.length).times(pull));
+            // Of an acceleration the force is that of the mass.
+            let (share, unit) = match self.gives {
+                Gives::Acceleration => (bodies.mass()[body], bodies.units.length + bodies.units.mass),
+                Gives::Force | Gives::Potential => (1.0, bodies.units.length),
+            };
+            for (place, pull) in place.iter().zip(self.place.global(self.gives, &pull)) {
+                work = work.plus(Scaled::new(*place * DoubleDouble::from(share), unit).times(pull));
             }
             ticker.tick()?;
         }
         Ok((energy, work))
     }
 
-    fn needs_mass(&self, _: usize) -> bool {
-        true
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        let Some(body) = self.bodies.iter().find(|&&body| body >= view.particles) else { return Ok(()) };
+        let count = view.particles;
+        Err(Error::invalid(
+            "bodies",
+            format!("expected indices of the {count} bodies of the scene, got {body}"),
+        ))
+    }
+    fn needs_mass(&self, body: usize) -> bool {
+        self.gives != Gives::Acceleration && self.acts_on(body)
+    }
+    fn names_bodies(&self) -> bool {
+        !self.bodies.is_empty()
     }
     fn needs(&self) -> Needs {
         self.expressions.needs
@@ -220,7 +283,9 @@ impl ForceTerm for ExpressionForce {
     fn in_every_lane(&self) -> Option<Vec<u64>> {
         let Place { axes, origin, scales } = &self.place;
         let place = axes.as_flattened().iter().chain(origin).chain(scales).map(|x| x.to_bits());
-        Some(place.chain(self.expressions.made_from.iter().copied()).collect())
+        let bodies = core::iter::once(self.bodies.len()).chain(self.bodies.iter().copied());
+        let made_from = self.expressions.made_from.iter().copied();
+        Some(place.chain(bodies.map(|body| body as u64)).chain(made_from).collect())
     }
     fn may_change_anywhere(&self) -> bool {
         true
@@ -235,13 +300,15 @@ impl ForceTerm for ExpressionForce {
         let Expressions { force, parameters, .. } = &self.expressions;
         let mut force = Machine::new(force.clone(), parameters);
         let mut strongest = 0.0;
-        for &(_, mass, position) in bodies {
+        let by_force = self.gives != Gives::Acceleration;
+        for &(_, mass, position) in bodies.iter().filter(|(body, ..)| self.acts_on(*body)) {
             let position = position.map(|x| scale(x, units.length));
             for t in times {
                 let mut pull = [0.0; 3];
                 force.evaluate(t / self.place.scales[2], &self.place.local(position, [0.0; 3]), &mut pull);
-                let pull = units.take_vector(self.place.global(&pull), kernel::FORCE);
-                strongest = pull.iter().fold(strongest, |most: f64, x| most.max(x.abs() / mass));
+                let pull = units.take_vector(self.place.global(self.gives, &pull), self.gives.dimension());
+                let share = if by_force { mass } else { 1.0 };
+                strongest = pull.iter().fold(strongest, |most: f64, x| most.max(x.abs() / share));
             }
         }
         Ok(strongest)

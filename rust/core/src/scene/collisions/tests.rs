@@ -40,6 +40,7 @@ fn collided(scene: &Scene, rule: Collisions, end: f64) -> Result<Output> {
         dt: None,
         time_transformation: None,
         rtol: 1e-9,
+        rtol_given: true,
         atol: None,
         max_step: None,
         first_step: None,
