@@ -125,6 +125,7 @@ pub fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -
         dt,
         time_transformation: None,
         rtol: 1e-13,
+        rtol_given: true,
         atol: None,
         max_step: None,
         first_step: None,
