@@ -147,3 +147,15 @@ def test_in_a_turning_frame_orbits_are_those_of_an_inertial_one() -> None:
         np.testing.assert_allclose(many.eccentricity[copy], alone.eccentricity, rtol=1e-12)
     with pytest.raises(vv.InvalidInput, match="one RotatingFrame"):
         vv.Scene(start, vv.Gravity(1.0), *frames).elements(1)
+
+
+@pytest.mark.parametrize("speed", [0.5, 1e-3, 2.0**0.5, 3.0])
+def test_on_a_straight_line_the_anomalies_have_one_sign(speed: float) -> None:
+    """Outbound is after the pericenter, which lies in the center; what stands still at the apsis is there."""
+    for sign in (1.0, -1.0):
+        for along in ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]):
+            place, velocity = np.array(along), sign * speed * np.array(along)
+            found = vv.orbits.elements(1.0, place, velocity)
+            assert found.true_anomaly == sign * np.pi
+            assert np.sign(found.time_since_pericenter) == sign
+    assert vv.orbits.elements(1.0, [1.0, 0, 0], [0.0, 0, 0]).true_anomaly == np.pi

@@ -49,3 +49,16 @@ def test_the_angle_is_as_certain_as_it_says(n: int, energy: float, depth: float)
     assert off <= max(float(found.error), np.finfo(float).eps * RADIUS / depth * expected)
     # Of the depth a rounding of r₀ leaves 4e-16/depth; that is told with a factor of some hundreds at most.
     assert float(found.error) <= max(1e-4, 3e-13 / depth) * expected
+
+
+@pytest.mark.parametrize("power", [2.0, 2.5, 4.0])
+def test_the_cross_section_at_a_soft_rim_has_no_end(power: float) -> None:
+    """ψ ~ (R − b)^(n − 1/2) for V ~ (R − r)^n: b/(sin ψ |dψ/db|) grows beyond all bounds for n > 1."""
+    soft = vv.potentials.SoftSphere(3.0, 1.0, power)
+    for frame in ("cm", "lab"):
+        keywords = {} if frame == "cm" else {"frame": "lab", "mass_ratio": 0.5}
+        found = vv.scattering.cross_section(soft, energy=1.3, angle=[0.0, 1e-12, 1e-6], **keywords)
+        assert found[0] == np.inf
+        assert found[1] > found[2] > 0.0
+    # All that touch the sphere are deflected by more than nothing.
+    assert vv.scattering.total_cross_section(soft, energy=1.3) == pytest.approx(np.pi, rel=1e-12)

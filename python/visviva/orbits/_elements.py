@@ -65,7 +65,7 @@ class Elements(OfOrbits, Shown):
     argument_of_pericenter : ndarray
         Angle from the node to the pericenter along the motion, in (−π, π].
     true_anomaly : ndarray
-        Angle from the pericenter to the body, in (−π, π].
+        Angle from the pericenter to the body, in (−π, π]; −π of what falls straight in.
     eccentric_anomaly : ndarray
         E of an ellipse in (−π, π], H of a hyperbola, D = tan(ν/2) of a parabola.
     mean_anomaly : ndarray

@@ -59,8 +59,9 @@ def cross_section(
     Returns
     -------
     ndarray
-        Area per steradian. Infinite at rainbows and glories and, for a potential that ends nowhere, at angle 0; 0 where
-        nothing goes. What is captured goes nowhere. Of the shape of the arguments, broadcast.
+        Area per steradian. Infinite at rainbows and glories and, for a potential that ends nowhere or goes to 0 where
+        it ends, at angle 0; 0 where nothing goes. What is captured goes nowhere. Of the shape of the arguments,
+        broadcast.
 
     Raises
     ------

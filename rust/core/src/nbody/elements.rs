@@ -15,7 +15,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 use crate::words::number;
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::Vector3;
 
 /// The elements of an orbit about a fixed center, all per unit mass.
@@ -146,7 +146,8 @@ impl Elements {
             inclination,
             node,
             argument_of_pericenter: argument,
-            true_anomaly: atan2(sine, cosine),
+            // On a straight line half a turn to either side: after the pericenter or before it.
+            true_anomaly: if sine == 0.0 && cosine < 0.0 { PI.copysign(since.to_f64()) } else { atan2(sine, cosine) },
             eccentric_anomaly: eccentric.to_f64(),
             mean_anomaly: mean.to_f64(),
             time_since_pericenter: scale(since.to_f64(), length - speed),

@@ -101,7 +101,7 @@ impl Structure<'_> {
             let around = 2.0 * PI - angle;
             return Ok(0.25 * PI * square * (1.0 / (angle * angle) + 1.0 / (around * around)) / sine(angle));
         }
-        if angle == 0.0 && self.outermost().is_some() {
+        if angle == 0.0 && (self.outermost().is_some() || self.ends_softly()) {
             return Ok(f64::INFINITY);
         }
         let angle = if angle == 0.0 && self.grazing(FORWARD).or(self.grazing(-FORWARD)).is_some() {
@@ -171,14 +171,26 @@ impl Structure<'_> {
         (self.deflector.range() == f64::INFINITY && last.angle != 0.0).then_some(last)
     }
 
+    /// The last sample before the edge of V, and the power of the distance from there with which ψ goes to 0; `None` of a V
+    /// without an edge.
+    fn at_the_edge(&self) -> Option<(Sample, f64)> {
+        let last = *self.stretches.last()?.iter().rfind(|sample| sample.angle != 0.0)?;
+        let range = self.deflector.range();
+        range.is_finite().then(|| (last, -last.derivative * (range - last.b) / last.angle))
+    }
+
+    /// Whether V ends at an edge that is no wall: so many graze it that the cross section has no end at angle 0.
+    fn ends_softly(&self) -> bool {
+        self.at_the_edge().is_some_and(|(_, power)| power > 0.5 + SQUARE_ROOT)
+    }
+
     /// The sample with that ψ nearer to the edge of V than b can tell, where V ends at a wall; `None` if it is not there.
     fn grazing(&self, target: f64) -> Option<Sample> {
-        let last = *self.stretches.last()?.last()?;
+        let (last, power) = self.at_the_edge()?;
         let range = self.deflector.range();
-        if !range.is_finite() || target == 0.0 || target.signum() != last.angle.signum() {
+        if target == 0.0 || target.signum() != last.angle.signum() {
             return None;
         }
-        let power = -last.derivative * (range - last.b) / last.angle;
         let at_wall = (power - 0.5).abs() < SQUARE_ROOT && target.abs() < last.angle.abs();
         at_wall.then(|| Sample {
             b: range,
