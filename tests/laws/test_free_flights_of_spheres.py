@@ -163,3 +163,38 @@ def test_points_meet_no_points() -> None:
     out = vv.Scene(vv.Particles(mass, x, v, radius=radius)).run(0.2, collisions="bounce")
     assert len(out.collisions) > 0
     assert ((out.collisions.first < 2) | (out.collisions.second < 2)).all()
+
+
+def test_spheres_that_have_met_without_a_bounce_part() -> None:
+    """Oblique and perfectly plastic: what is left slides along the surface, and meets no more, however it is rounded."""
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        x = np.array([[0.0, 0, 0], 0.3 * random.normal(size=3) + [4.0, 0, 0]]) + random.normal(size=3)
+        v = np.array([[0.0, 0, 0], [-1.0, 0, 0]]) + random.normal(size=3)
+        given = {"mass": [1.0, 1.0], "position": x, "velocity": v, "radius": 0.5}
+        out = scene_of(given).run(10.0, collisions="bounce", restitution=0.0)
+        other = scene_of(given).run(10.0, collisions="bounce", restitution=0.0, method="verner98")
+        assert len(out.collisions) == len(other.collisions)
+        np.testing.assert_allclose(out.position, other.position, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.5, 0.0])
+def test_a_graze_is_one_meeting_that_changes_nothing(restitution: float) -> None:
+    given = {
+        "mass": [1.0, 1.0],
+        "position": [[0.0, 0, 0], [-1, 4, 0]],
+        "velocity": [[0.0, 0, 0], [0, -1, 0]],
+        "radius": 0.5,
+    }
+    out = scene_of(given).run(20.0, collisions="bounce", restitution=restitution)
+    np.testing.assert_array_equal(out.position[-1], [[0.0, 0, 0], [-1, -16, 0]])
+    assert out.collisions.speed.tolist() == [0.0]
+    assert out.collisions.t.tolist() == [4.0]
+
+
+def test_tiny_spheres_far_away_meet_head_on() -> None:
+    for radius in (5e-3, 5e-151, 5e-161, 5e-290):
+        given = {"mass": [1.0, 1.0], "position": [[0.0, 0, 0], [3, 0, 0]], "velocity": [[1.0, 0, 0], [0, 0, 0]]}
+        out = scene_of(given | {"radius": radius}).run(10.0, collisions="bounce")
+        np.testing.assert_allclose(out.collisions.t, [3.0 - 2 * radius], rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(out.velocity[-1, :, 0], [0.0, 1.0])

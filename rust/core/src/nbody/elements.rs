@@ -147,7 +147,11 @@ impl Elements {
             node,
             argument_of_pericenter: argument,
             // On a straight line half a turn to either side: after the pericenter or before it.
-            true_anomaly: if sine == 0.0 && cosine < 0.0 { PI.copysign(since.to_f64()) } else { atan2(sine, cosine) },
+            true_anomaly: if sine == 0.0 && cosine < 0.0 {
+                PI.copysign(since.to_f64())
+            } else {
+                atan2(sine, cosine)
+            },
             eccentric_anomaly: eccentric.to_f64(),
             mean_anomaly: mean.to_f64(),
             time_since_pericenter: scale(since.to_f64(), length - speed),

@@ -13,6 +13,9 @@ use crate::parallel::Ticker;
 /// Pairs that are looked at between two questions whether to go on.
 const PER_TICK: usize = 1024;
 
+/// Places that are farther apart than so many powers of two times the radii are told in a unit between both.
+const WIDE: i32 = 400;
+
 /// The longest span, in units in which speeds are about 1: what is beyond is beyond all numbers.
 const LONGEST: f64 = 1e290;
 
@@ -76,7 +79,10 @@ impl Flights {
     ) -> Result<Self> {
         let largest =
             |of: &mut dyn Iterator<Item = &f64>| exponent(of.fold(0.0, |most, x| x.abs().max(most)));
-        let length = largest(&mut impact.radius.iter());
+        let (radius, far) =
+            (largest(&mut impact.radius.iter()), largest(&mut impact.position.iter().flatten()));
+        // Squares of both stay within the range of numbers.
+        let length = if far - radius > WIDE { radius + (far - radius) / 2 } else { radius };
         let speed = largest(&mut impact.velocity.iter().flatten());
         let mut order: Vec<usize> =
             (0..impact.mass.len()).filter(|&body| impact.host[body] == body).collect();
@@ -188,7 +194,9 @@ impl Flights {
         }
         let disturbed = lost.clone();
         for (place, next) in self.next.iter().enumerate() {
-            lost[place] |= disturbed.get(next.other).is_some_and(|&disturbed| disturbed);
+            // Those that were in contact have been settled, whether or not that has changed anything.
+            let settled = next.near <= self.now;
+            lost[place] |= settled || disturbed.get(next.other).is_some_and(|&disturbed| disturbed);
         }
         for place in (0..lost.len()).filter(|&place| lost[place]) {
             ticker.tick()?;
@@ -245,15 +253,20 @@ fn scaled(time: DoubleDouble, exponent: i32) -> DoubleDouble {
     DoubleDouble::new(scale(time.high(), exponent), scale(time.low(), exponent))
 }
 
-/// Whether two may be in contact for all that rounding can tell: most are far from it, and told at once.
-fn near(a: &Body, b: &Body) -> bool {
-    let (mut square, mut far) = (0.0, 0.0_f64);
-    for (a, b) in a.position.iter().zip(&b.position) {
-        square += (a - b) * (a - b);
-        far = far.max(a.abs()).max(b.abs());
-    }
+/// What two are farther apart than their radii, squared, if they are in contact for all that rounding of places can tell; and
+/// what rounding it is.
+fn contact(a: &Body, b: &Body) -> (f64, f64) {
+    let far = a.position.iter().chain(&b.position).fold(0.0_f64, |far, x| far.max(x.abs()));
     let radius = a.radius + b.radius;
-    square <= radius * (radius * (1.0 + 2.0 * CONTACT) + 64.0 * f64::EPSILON * far)
+    let rounding = radius * (64.0 * f64::EPSILON * far);
+    (radius * radius * (2.0 * CONTACT) + rounding, rounding.max(radius * radius * TOUCH))
+}
+
+/// Whether two may be in contact: most are far from it, and told at once.
+fn near(a: &Body, b: &Body) -> bool {
+    let square: f64 = a.position.iter().zip(&b.position).map(|(a, b)| (a - b) * (a - b)).sum();
+    let radius = a.radius + b.radius;
+    square - radius * radius <= contact(a, b).0
 }
 
 /// How long it takes until two are in contact for all that rounding can tell, and until they touch, if they will: the
@@ -271,19 +284,27 @@ fn meet(a: &Body, b: &Body) -> Option<[f64; 2]> {
         hasted = HASTE;
     }
     let square = (a.radius + b.radius) * (a.radius + b.radius);
-    let approach = -dot(&apart, &faster);
+    let (approach, speed) = (-dot(&apart, &faster), dot(&faster, &faster));
+    let left = dot(&apart, &apart) - square;
+    let (in_contact, least) = contact(a, b);
+    if left <= in_contact {
+        // b² - w² c: they come nearer by so much, if they do at all.
+        let discriminant = approach * approach - speed * least;
+        let at = (discriminant >= 0.0).then(|| least / (approach + discriminant.sqrt()))?;
+        return Some([0.0, at].map(|after| scale(after, hasted)));
+    }
     // R²w² - |d × w|²: without the squares of distances, which cancel.
     let moment: [f64; 3] = core::array::from_fn(|c| {
         let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
         apart[c1] * faster[c2] - apart[c2] * faster[c1]
     });
-    let (speed, moment) = (dot(&faster, &faster), dot(&moment, &moment));
-    let after = |square: f64, least: f64| {
+    let moment = dot(&moment, &moment);
+    let after = |square: f64| {
         let discriminant = square * speed - moment;
-        let left = (dot(&apart, &apart) - square).max(least);
+        let left = dot(&apart, &apart) - square;
         (discriminant >= 0.0).then(|| left / (approach + discriminant.sqrt()))
     };
-    let at = after(square, TOUCH * square)?;
-    let near = after(square * (1.0 + CONTACT), 0.0).unwrap_or(at).min(at);
+    let at = after(square)?;
+    let near = after(square * (1.0 + CONTACT)).map_or(at, |near| near.max(0.0).min(at));
     Some([near, at].map(|after| scale(after, hasted)))
 }
