@@ -166,7 +166,7 @@ def test_points_meet_no_points() -> None:
 
 
 def test_spheres_that_have_met_without_a_bounce_part() -> None:
-    """Oblique and perfectly plastic: what is left slides along the surface, and meets no more, however it is rounded."""
+    """Oblique and perfectly plastic: what is left slides along the surface, which is no meeting."""
     for seed in range(60):
         random = np.random.default_rng(seed)
         x = np.array([[0.0, 0, 0], 0.3 * random.normal(size=3) + [4.0, 0, 0]]) + random.normal(size=3)
