@@ -11,7 +11,7 @@ FUNCTIONS = (
     "asin", "acos", "atan", "asinh", "acosh", "atanh",
 )  # fmt: skip
 #: Of a smooth step in the place of a leap: one that is narrower than a step is found by methods that choose theirs.
-WIDTH = "which steps follow, however small the width"
+WIDTH = "which steps follow; what sticks costs time as 1/width, so take a thousandth of the usual values for it"
 #: Where two laws meet.
 SWITCH = "end the run by an event where it switches, and go on from out.final with the other law"
 _LARGER = "write (x + y + abs(x - y)) / 2"
