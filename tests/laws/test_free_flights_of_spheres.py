@@ -178,6 +178,21 @@ def test_spheres_that_have_met_without_a_bounce_part() -> None:
         np.testing.assert_allclose(out.position, other.position, rtol=0, atol=1e-8)
 
 
+@pytest.mark.parametrize("rule", RULES)
+def test_what_slides_past_another_does_not_meet_it(rule: str) -> None:
+    """In contact at the start, with velocities across the line of centers, which rounding makes an approach of."""
+    for seed in range(100):
+        random = np.random.default_rng(seed)
+        line = random.normal(size=3)
+        line /= np.linalg.norm(line)
+        across = np.cross(line, random.normal(size=3))
+        carried = random.normal(size=3)
+        given = {"mass": [1.0, 2.0], "position": [[0.0, 0, 0], line], "velocity": [carried, carried + across]}
+        out = scene_of(given | {"radius": 0.5}).run([0.0, 5.0], collisions=rule)
+        assert len(out.collisions) == 0
+        np.testing.assert_allclose(out.position[-1, 1], line + 5 * (carried + across), rtol=0, atol=1e-14 * 10)
+
+
 @pytest.mark.parametrize("restitution", [1.0, 0.5, 0.0])
 def test_a_graze_is_one_meeting_that_changes_nothing(restitution: float) -> None:
     given = {

@@ -41,6 +41,8 @@ _DIRECTIONS = 8
 _FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
 _ON_THE_AXIS = 1e-7
+#: What part of what momenta do the last digits of a state make at a pole.
+_MADE_OF_THEM = 0.1
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
 #: States are found to this part of their sizes.
@@ -107,8 +109,27 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
         places.append(states[0])
         states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
     energy = _energy(system)
-    places = told_apart(energy, places, size, lambda _: scales.units)
-    return [_equilibrium(system, energy, place, scales) for place in sorted(places, key=tuple)]
+    places = sorted(told_apart(energy, places, size, lambda _: scales.units), key=tuple)
+    if everywhere:
+        # At a pole of the coordinates H is singular, and what has no momentum there may go anywhere.
+        regular = [place for place in places if not _is_pole(system, place)]
+        if places and not regular:
+            raise InvalidInput(
+                "H",
+                f"the rates vanish at {places[0][:n].round(6).tolist()}, where H is singular, as at the pole of spherical "
+                "coordinates: these cannot describe small motions there; use others, such as x and y",
+            )
+        places = regular
+    return [_equilibrium(system, energy, place, scales) for place in places]
+
+
+def _is_pole(system: Hamiltonian, state: NDArray[np.float64]) -> bool:
+    """Tell whether a momentum moves its coordinate beyond all bounds there, but for what the last digits make of it."""
+    n = len(system.coordinates)
+    beside = np.stack([state, state * (1.0 + LAST_DIGITS)])
+    with np.errstate(invalid="ignore"):
+        here, there = rates_and_slopes(system, beside)[1][:, :n, n:]
+        return not bool((np.abs(there - here) <= _MADE_OF_THEM * np.abs(here).max(axis=1, keepdims=True)).all())
 
 
 def _forces(system: Hamiltonian, states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

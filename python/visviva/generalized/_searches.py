@@ -50,7 +50,7 @@ def starts_of_a_search(n: int) -> NDArray[np.float64]:
         aside = 1e-3 * np.arange(1, n + 1)
         along = np.tile(aside, (n, _ALONG_AN_AXIS, 1))
         for axis in range(n):
-            along[axis, :, axis] = np.linspace(-np.pi, np.pi, _ALONG_AN_AXIS)
+            along[axis, :, axis] += np.linspace(-np.pi, np.pi, _ALONG_AN_AXIS)
         line = np.linspace(-np.pi, np.pi, min(side, 25))
         # Not on the symmetry lines themselves, where Newton's method may be caught.
         grid = np.meshgrid(*[line + by for by in aside], indexing="ij")

@@ -14,6 +14,9 @@ const ALL_PAIRS: usize = 8192;
 /// What is more than so many times as far along one axis is farther away, whatever rounding makes of a distance.
 const FARTHER: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
 
+/// Some last digits of a number, as a part of it: enough to be told from the rounding of what is made of it.
+const DIGITS: f64 = 1.0 / (1_u64 << 44) as f64;
+
 /// So many roundings of a place an error of a step is not told from.
 const ROUNDINGS: f64 = 2.0;
 
@@ -46,7 +49,9 @@ impl Prepared {
         let span = self.units.take(plan.span, [0, 0, 1]);
         let slow = if span > 0.0 { length / span } else { 1.0 };
         self.size = (length, if velocity > 0.0 { velocity } else { slow });
-        self.rounding = self.rounding_of_places(plan, length, ticker)?;
+        let of_points = self.rounding_of_places(plan, length, ticker)?;
+        let of_formulas = self.rounding_of_formulas(plan, length, ticker)?;
+        self.rounding = (of_points.0.max(of_formulas.0), of_points.1.max(of_formulas.1));
         Ok(())
     }
 
@@ -66,6 +71,34 @@ impl Prepared {
         let rate = rate.max((self.strongest(here(), plan, ticker)? / length).sqrt());
         let place = ROUNDINGS * f64::EPSILON * far;
         Ok((place, place * rate))
+    }
+
+    /// The same of forces of which nothing tells where they are from: what a few last digits of places and of the time change
+    /// in them, far from the origin or long after the time zero.
+    fn rounding_of_formulas(&self, plan: &Plan, length: f64, ticker: &mut Ticker<'_>) -> Result<(f64, f64)> {
+        let forces = plan.forces_of(self.unit.copy).iter().filter(|force| force.may_change_anywhere());
+        let bodies = self.bodies();
+        let beside: Vec<_> = bodies
+            .iter()
+            .map(|&(body, mass, position)| (body, mass, position.map(|x| x * (1.0 + DIGITS))))
+            .collect();
+        let (mut strongest, mut change) = (0.0_f64, 0.0_f64);
+        for force in forces {
+            for share in [0.0, 0.5, 1.0] {
+                let t = plan.t0 + share * plan.direction * plan.span;
+                let mut at = |bodies: &[_], t: f64| force.strongest(bodies, self.units, [t; 3], ticker);
+                let here = at(&bodies, t)?;
+                let off = (at(&beside, t)? - here).abs() + (at(&bodies, t * (1.0 + DIGITS))? - here).abs();
+                strongest = strongest.max(here);
+                change = change.max(off * (f64::EPSILON / DIGITS));
+            }
+        }
+        let rate = (strongest / length).sqrt();
+        if !(rate > 0.0 && change.is_finite()) {
+            return Ok((0.0, 0.0));
+        }
+        let velocity = ROUNDINGS * change / rate;
+        Ok((velocity / rate, velocity))
     }
 
     /// A length for a body that is where distances are measured from: what it passes and falls before the forces on it

@@ -11,8 +11,9 @@ use crate::{Error, Result};
 
 /// Of |V| farther out, what is less than this part of it falls.
 const FALLS: f64 = 0.99;
-/// What V comes to far out is nothing if it is this part of what it is nearer, as sums leave it that end in zero.
-const ROUNDING: f64 = 1.0 / (1_u64 << 50) as f64;
+/// What V comes to far out is nothing if it is this part of what it is nearer, as sums of larger terms leave it that end in
+/// zero.
+const ROUNDING: f64 = 1.0 / (1_u64 << 43) as f64;
 /// Powers of two beyond the grid, the farthest first: squares and higher powers in V may leave the range of numbers.
 const BEYOND: [i32; 6] = [900, 450, 300, 200, 150, 100];
 
