@@ -123,6 +123,8 @@ def class_stub(entry: dict[str, Any], base: str) -> str:
         fields.append(f"    {name}: {words or FIELD[kind]}\n")
         if default is not None and kind == "choice":
             default = f'"{parameter["choices"][int(default)]}"'
+        elif default is not None and kind == "indices":
+            default = ()
         given = "" if default is None else f" = {(default,) * 3 if FIELD[kind].startswith('tuple') else default}"
         arguments.append(f"{name}: {words or ARGUMENT[kind]}{given}")
     return (

@@ -201,7 +201,7 @@ class ExpressedForce(Force):
         length: float = 1.0,
         mass: float = 1.0,
         time: float = 1.0,
-        bodies: ArrayLike = 0.0,
+        bodies: ArrayLike = (),
     ) -> None: ...
 
 def force_from_core(description: dict[str, Any]) -> Force: ...

@@ -1,4 +1,4 @@
-"""Equilibria on a sphere in its angles, of which the poles are none, whatever is in balance there in these coordinates."""
+"""Equilibria on a sphere in its angles, of which the poles are none, whatever is in balance in these coordinates."""
 
 from __future__ import annotations
 

@@ -116,8 +116,8 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
         if places and not regular:
             raise InvalidInput(
                 "H",
-                f"the rates vanish at {places[0][:n].round(6).tolist()}, where H is singular, as at the pole of spherical "
-                "coordinates: these cannot describe small motions there; use others, such as x and y",
+                f"the rates vanish at {places[0][:n].round(6).tolist()}, where H is singular, as at the pole of "
+                "spherical coordinates: these cannot describe small motions there; use others, such as x and y",
             )
         places = regular
     return [_equilibrium(system, energy, place, scales) for place in places]
