@@ -353,7 +353,9 @@ def checked_potential(name: str, value: object) -> Potential:
 
 
 def wrapped(value: object) -> str:
-    """The end of a message that refuses a function, or a formula, as a potential: what makes one of it."""
+    """The end of a message that refuses functions, formulas or several as a potential: what makes one of them."""
+    if isinstance(value, list | tuple):
+        return "; their sum is one formula: vv.potentials.Custom(lambda r: …)"
     if isinstance(value, type) or not (callable(value) or hasattr(value, "free_symbols")):
         return ""
     return "; wrap it: vv.potentials.Custom(function), and one that is no formula with r_min=… and r_max=…"

@@ -265,3 +265,22 @@ def test_refusals(argument: str, changes: dict[str, object]) -> None:
     with pytest.raises(vv.InvalidInput) as caught:
         run(**changes) if argument != "spread" else Spread()
     assert caught.value.argument == argument
+
+
+def test_several_energies_are_a_spectrum() -> None:
+    for several in ([1.0, 2.0], np.array([1.0, 2.0])):
+        with pytest.raises(vv.InvalidInput, match=r"beam_energy: expected one number, or a Spectrum\(energy, weight\)"):
+            vv.scattering.monte_carlo(
+                vv.potentials.HardSphere(1.0),
+                beam_energy=several,
+                masses=(1.0, 4.0),
+                b_max=1.0,
+                n_events=10,
+                seed=1,  # type: ignore[arg-type]
+            )
+
+
+def test_several_potentials_are_one_formula() -> None:
+    several = [vv.potentials.Coulomb(1.0), vv.potentials.PowerLaw(1.0, 4.0)]
+    with pytest.raises(vv.InvalidInput, match=r"their sum is one formula: vv.potentials.Custom\(lambda r"):
+        vv.scattering.deflect(several, energy=1.0, impact_parameter=1.0)  # type: ignore[arg-type]

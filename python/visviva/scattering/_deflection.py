@@ -68,8 +68,8 @@ class Deflection(Shown):
         The time lost against free motion, times the speed far out: a length. Infinite where V falls no faster than 1/r.
     error : ndarray
         An estimate of how far the angle may be off, but for what the rounding of energy and impact parameter makes of
-        it, which is `conditioning` times 1e-16. It is that of the potential as it is: a `Tabulated` or a `Custom` may
-        be farther from what it stands for, a `Custom` by its ``tolerance``.
+        it: of the latter that is `conditioning` times 1e-16. It is that of the potential as it is: a `Tabulated` or a
+        `Custom` may be farther from what it stands for, a `Custom` by its ``tolerance``.
     turning_points : ndarray of int
         How many turning points radial motion with this energy and angular momentum has, inner ones too.
     status : ndarray of int

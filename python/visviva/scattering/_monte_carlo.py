@@ -10,6 +10,7 @@ import numpy as np
 from visviva._arrays import float_array, number, positive
 from visviva._declared import checked_potential
 from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
@@ -208,6 +209,10 @@ def next_events(
 
 
 def _energy(given: object) -> float | Spectrum:
+    if isinstance(given, list | tuple | np.ndarray) and np.ndim(given) > 0:
+        raise InvalidInput(
+            "beam_energy", f"expected one number, or a Spectrum(energy, weight) of several, got {given!r}"
+        )
     return given if isinstance(given, Spectrum) else number("beam_energy", given)
 
 
