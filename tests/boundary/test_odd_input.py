@@ -61,6 +61,7 @@ def test_the_core_itself_refuses_no_copies(shape: tuple[int, int]) -> None:
         "end_only": True,
         "method": "auto",
         "rtol": 1e-9,
+        "rtol_given": True,
         "record": list(COLUMNS),
         "events": [],
     }
