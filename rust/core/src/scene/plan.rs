@@ -11,6 +11,7 @@ mod quiet;
 mod refusals;
 mod series;
 mod solutions;
+mod threads;
 mod tolerances;
 mod turn;
 mod turning;
@@ -24,7 +25,6 @@ pub(in crate::scene) use turning::with_method;
 pub use turning::{Turning, steps_bodies};
 
 use super::Scene;
-use super::closed_form::rows_per_chunk;
 use super::collisions::Collisions;
 use super::events::{Event, What};
 use super::frame::{Frame, Origin, Units};
@@ -46,12 +46,6 @@ use own::{Own, about, acting};
 use quiet::Quiet;
 use std::sync::Arc;
 
-/// From this many pairs per evaluation on, one force evaluation is shared out over threads.
-const PAIRS_FOR_THREADS: u64 = 60_000;
-/// From this many units times pairs on, units are shared out over threads: fewer are done before a thread wakes.
-const WORK_FOR_THREADS: u64 = 64;
-/// From this many states of bodies on, closed forms are shared out over threads.
-const STATES_FOR_THREADS: usize = 4_096;
 /// The relative tolerance at which what has a closed form is integrated for its events: the errors of thousands of turns are
 /// then those of rounding.
 const AS_KNOWN: f64 = 3e-14;
@@ -338,31 +332,6 @@ impl Plan {
             _ => &*unit.bodies,
         };
         self.frame_of(unit.copy).origin(scene, unit.copy, bodies.iter().copied())
-    }
-
-    fn share_threads(&self, request: &Request) -> (usize, usize) {
-        let threads = request.threads;
-        if self.events.iter().any(Event::calls) {
-            return (1, 1);
-        }
-        if !self.solutions.integrates() {
-            let rows = self.copies.saturating_mul(request.times.len());
-            let work = rows.saturating_mul(self.particles);
-            let threads = threads.min(rows.div_ceil(rows_per_chunk(self.particles)));
-            return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
-        }
-        let units = self.copies * self.watched_kinds().len();
-        let together =
-            if self.guided { self.copies * self.pieces(self.passive.len(), threads) } else { units };
-        let groups = together.div_ceil(self.layout.units());
-        let pairs = self.pairs_per_evaluation();
-        if groups == 1 && pairs >= PAIRS_FOR_THREADS {
-            (1, threads)
-        } else if (units as u64) * (1 + pairs) < WORK_FOR_THREADS {
-            (1, 1)
-        } else {
-            (threads.min(groups), 1)
-        }
     }
 
     /// Whether each unit takes its steps at times of its own.

@@ -18,7 +18,7 @@ mod turns;
 
 use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What};
 use super::super::unit::{Prepared, Turned};
-use super::{Ending, Job, Report};
+use super::Job;
 use crate::error::Result;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
@@ -385,19 +385,5 @@ impl<'a> Watch<'a> {
         }
         self.go_on();
         Ok(())
-    }
-
-    /// What was found, and the ending of a unit that an event has stopped, in the report.
-    pub(super) fn tell(self, report: &mut Report) {
-        if let (true, Some(last)) = (self.stopped, self.found.last()) {
-            report.ending = Ending::Stopped;
-            report.time = last.t;
-            report.states = last.states[report.unit.recorded.clone()].to_vec();
-            report.turned.clone_from(&last.turned);
-            let direction = self.job.plan.direction;
-            let passed = self.job.times.partition_point(|t| (t - last.t) * direction <= 0.0);
-            report.rows = report.rows.min(passed);
-        }
-        report.found = self.found;
     }
 }

@@ -5,6 +5,7 @@
 //!
 //! [`Event::rounding_as_told`]: crate::scene::events::Event::rounding_as_told
 
+use super::super::{Ending, Report};
 use super::search::{Search, Zero};
 use super::{Found, Interpolant, Watch};
 use crate::error::Result;
@@ -137,6 +138,20 @@ impl Watch<'_> {
         }
         let beside = self.sight(unit, event, (&nudged, elapsed), ticker)?;
         Ok((beside.value - sight.value).abs())
+    }
+
+    /// What was found, and the ending of a unit that an event has stopped, in the report.
+    pub(in super::super) fn tell(self, report: &mut Report) {
+        if let (true, Some(last)) = (self.stopped, self.found.last()) {
+            report.ending = Ending::Stopped;
+            report.time = last.t;
+            report.states = last.states[report.unit.recorded.clone()].to_vec();
+            report.turned.clone_from(&last.turned);
+            let direction = self.job.plan.direction;
+            let passed = self.job.times.partition_point(|t| (t - last.t) * direction <= 0.0);
+            report.rows = report.rows.min(passed);
+        }
+        report.found = self.found;
     }
 }
 
