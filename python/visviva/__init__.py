@@ -51,6 +51,7 @@ _HOME = {
     "Invariants": "invariants",
     "Lagrangian": "generalized",
     "LinearDrag": "forces",
+    "Megno": "megno",
     "Method": "integrators",
     "MissingPackage": "errors",
     "Oblate": "forces",
@@ -141,6 +142,7 @@ __all__ = [
     "Invariants",
     "Lagrangian",
     "LinearDrag",
+    "Megno",
     "Method",
     "MissingPackage",
     "Oblate",
@@ -264,6 +266,7 @@ if TYPE_CHECKING:
     from visviva.integrators import Method, methods
     from visviva.invariants import Invariants
     from visviva.io import load
+    from visviva.megno import Megno
     from visviva.particles import Particles
     from visviva.plan import Cost, Plan
     from visviva.rigid_bodies import RigidBodies

@@ -41,7 +41,16 @@ if TYPE_CHECKING:
         TransformationName,
     )
 
-__all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished", "fixed_steps"]
+__all__ = [
+    "MegnoRequest",
+    "PlanRequest",
+    "RunRequest",
+    "StreamRequest",
+    "asked_by",
+    "execute",
+    "finished",
+    "fixed_steps",
+]
 
 _Parameters = ParamSpec("_Parameters")
 _Request = TypeVar("_Request")
@@ -234,6 +243,18 @@ class StreamRequest(PlanRequest):
     copies_at_once: int | None = None
     threads: int | None = None
     progress: Progress = False
+
+
+@dataclass(frozen=True)
+class MegnoRequest:
+    """What is asked of neighboring motions: the arguments of ``megno``."""
+
+    t: ArrayLike
+    method: MethodName | Method = field(default="auto", kw_only=True)
+    dt: float | None = field(default=None, kw_only=True)
+    rtol: float | None = field(default=None, kw_only=True)
+    seed: int = field(default=0, kw_only=True)
+    threads: int | None = field(default=None, kw_only=True)
 
 
 _STOPPED = Status.STOPPED

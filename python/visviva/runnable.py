@@ -6,13 +6,16 @@ Their arguments are the fields of the request (`visviva.request`).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from visviva import _core
 from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva.plan import Plan
-from visviva.request import PlanRequest, RunRequest, asked_by, execute
+from visviva.request import MegnoRequest, PlanRequest, RunRequest, asked_by, execute
+
+if TYPE_CHECKING:
+    from visviva.megno import Megno
 
 __all__ = ["Runnable"]
 
@@ -202,6 +205,64 @@ class Runnable(Shown, ABC, Generic[_Result]):
         """
         asked = request.to_core(self._keywords, self._names)
         return Plan._from_core(_core.plan(asked), asked)
+
+    @asked_by(MegnoRequest)
+    def megno(self, request: MegnoRequest) -> Megno:
+        """Whether the motion is regular or chaotic: the mean exponential growth of nearby orbits (MEGNO).
+
+        A neighbor starts next to the scene, or next to each copy of an ensemble, in a random direction. How far it gets
+        is seen at some 2000 instants, more where much happens; it is set near again before it is far. All forces and
+        methods do. In an ensemble copies have the figures that they have alone, to about 1e-5.
+
+        Units: those of the scene.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end, or output times in the order of the motion, forwards or backwards. Some hundred periods of the
+            slowest motion tell regular from chaotic.
+        method, dt, rtol, threads : optional
+            As of `run`.
+        seed : int, optional
+            Of the direction, by NumPy's generator. Regular motions have 2 from every one, up to a few hundredths.
+
+        Returns
+        -------
+        Megno
+            Arrays with an axis over copies and one over times; numbers for one scene and one end.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `run`; rigid bodies; a motion so far from the origin that rounding hides neighbors.
+        visviva.ConvergenceError
+            Of a scene: the motion, or its neighbor, ended early. Copies of an ensemble tell it by `Megno.status`.
+        visviva.Interrupted
+            Ctrl-C.
+
+        Warns
+        -----
+        visviva.AccuracyWarning
+            As `run`.
+
+        References
+        ----------
+        P. Cincotta & C. Simó, Astron. Astrophys. Suppl. 147 (2000) 205; of differences of two motions: G. Benettin, L.
+        Galgani & J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> planets = vv.datasets.outer_solar_system().scene
+        >>> bool(abs(planets.megno(t=365.25 * 2000).mean_megno - 2.0) < 0.1)
+        True
+        >>> velocity = planets.particles.velocity * np.array([1.0, 1.2])[:, None, None]
+        >>> planets.ensemble(velocity=velocity).megno(t=[1e5, 2e5]).mean_megno.shape
+        (2, 2)
+        """
+        from visviva.megno import megno_of
+
+        return megno_of(self, request)
 
 
 def __dir__() -> list[str]:

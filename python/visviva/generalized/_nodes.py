@@ -368,7 +368,9 @@ def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise InvalidInput(argument, f"expected one number of the function, got {type(value).__name__}") from None
+        cure = "" if np.ndim(value) == 0 else "; places and velocities come as arrays, whose parts are r[0], r[1], …"
+        came = type(value).__name__
+        raise InvalidInput(argument, f"expected one number of the function, got {came}{cure}") from None
     return nodes.constant(_finite(argument, number))
 
 

@@ -13,7 +13,7 @@ use crate::errors::raised;
 use crate::gate::{compute, is_ctrl_c};
 use input::{Array, Asked, forces as described, point, points, snapshot};
 pub(crate) use output::Planned;
-use output::{error_dict, output_dict, plan_dict};
+use output::{error_dict, output_dict, plan_dict, status};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rigid::{Described, Turning};
@@ -26,6 +26,7 @@ use visviva_core::parallel::thread_count;
 use visviva_core::scene::Scene;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::refuse_frames;
+use visviva_core::scene::run::neighbors::follow;
 use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
 /// Plans a run without running it.
@@ -63,6 +64,25 @@ pub(crate) fn run<'py>(
         dict.set_item("error", error_dict(py, &Error::Interrupted)?)?;
     }
     Ok(dict)
+}
+
+/// What neighbors of the copies of a scene do: logarithms of their growth, and how each copy ended.
+#[pyfunction]
+#[pyo3(signature = (asked, toward, *, threads))]
+pub(crate) fn neighbors<'py>(
+    py: Python<'py>,
+    asked: Asked<'py>,
+    toward: Array<'py>,
+    threads: Option<i64>,
+) -> PyResult<(Bound<'py, numpy::PyArrayDyn<f64>>, Bound<'py, numpy::PyArrayDyn<i8>>)> {
+    let (scene, request, _) = asked.prepared(threads)?;
+    let (toward, _) = copied("toward", &toward, [Some(scene.particles), Some(2), Some(3)])?;
+    let toward: Vec<[[f64; 3]; 2]> = points(&toward).as_chunks::<2>().0.to_vec();
+    let grown = compute(py, 0, None, |ticker| follow(&scene, &request, &toward, ticker))?.whole(py)?;
+    let status = grown.iter().map(|copy| status(&copy.ending)).collect();
+    let shape = [grown.len(), request.times.len()];
+    let growth = grown.into_iter().flat_map(|copy| copy.growth).collect();
+    Ok((moved(py, growth, &shape)?, moved(py, status, &shape[..1])?))
 }
 
 /// Conserved quantities of recorded states.

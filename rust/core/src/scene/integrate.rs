@@ -8,6 +8,7 @@ mod events;
 mod fixed;
 mod halved;
 mod held;
+pub mod neighbors;
 mod report;
 
 pub use events::Found;

@@ -103,6 +103,8 @@ pub struct Plan {
     pub spheres: bool,
     /// Whether spheres that touch are looked for, and all bodies therefore on the same steps.
     pub touching: bool,
+    /// Whether what neighbors of the motion do is asked for, and all bodies therefore on the same steps.
+    pub neighbors: bool,
     /// Threads over units, and inside one force evaluation.
     pub threads: (usize, usize),
     /// Output times between the start and the end.
@@ -149,6 +151,14 @@ impl Plan {
     /// As [`Scene::validate`] and [`Request::check`]: bad input is refused here, before anything runs. When the caller asks
     /// to stop.
     pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
+        Self::of(scene, request, false, ticker)
+    }
+
+    /// Plans a run, or that of a scene beside its neighbors, in which all bodies are on the same steps.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of(scene: &Scene, request: &Request, neighbors: bool, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
         ticker.tick()?;
         let with_step = with_method(scene, request);
@@ -172,7 +182,7 @@ impl Plan {
         }
         // Spheres may touch whichever they are: all of them are on one step.
         let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
-        let groups = if touching { Groups::All } else { turning::groups(scene, &forces) };
+        let groups = if touching || neighbors { Groups::All } else { turning::groups(scene, &forces) };
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
             Groups::Listed(groups) => {
@@ -182,21 +192,21 @@ impl Plan {
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
         series::check(method, &forces, &active, &passive, &groups)?;
-        let chosen = if automatic && !turning.steps() {
+        let chosen = if automatic && !turning.steps() && !neighbors {
             series::first_choice(&forces, &active, &passive, (&groups, touching))
         } else {
             None
         };
         let method = chosen.unwrap_or(method);
         // Events are looked for on steps.
-        let closed_forms = automatic && request.events.is_empty() && !turning.steps();
+        let closed_forms = automatic && request.events.is_empty() && !turning.steps() && !neighbors;
         let solutions = match &request.events[..] {
             _ if closed_forms => Solutions::of(scene, ticker)?,
             [_] if automatic && touching => Solutions::of(scene, ticker)?.straight_lines(),
             _ => Solutions::integration(scene.copies),
         };
         // A contact ends a leg of a run, and the next begins anew.
-        let known = if automatic && !closed_forms && !turning.steps() && !touching {
+        let known = if automatic && !closed_forms && !turning.steps() && !touching && !neighbors {
             Some(Solutions::of(scene, ticker)?)
         } else {
             None
@@ -206,7 +216,8 @@ impl Plan {
         if let (Some(times), None) = (integrated, &scene.own_forces) {
             refusals::check_drives(&forces, times)?;
         }
-        let planar = planar(scene, &forces) && !turning.steps();
+        // Neighbors leave a plane.
+        let planar = planar(scene, &forces) && !turning.steps() && !neighbors;
         let count = forces.len();
         // Points of bodies may be held in space, or tied to it.
         let moves = solutions.integrates() && !turning.steps();
@@ -216,6 +227,7 @@ impl Plan {
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && !touching
+            && !neighbors
             && !turning.steps()
             && serves(method, active.len());
         if let Some((by, _)) = transformed {
@@ -263,6 +275,7 @@ impl Plan {
             collisions: request.collisions,
             spheres: scene.radius.iter().any(|&radius| radius > 0.0),
             touching,
+            neighbors,
             threads: (1, 1),
             outputs_between: request.outputs_between(scene.t0),
             events: request.events.clone().into(),

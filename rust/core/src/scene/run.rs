@@ -4,6 +4,7 @@ mod begun;
 mod derived;
 mod events;
 mod half_steps;
+pub mod neighbors;
 mod patterns;
 mod reached;
 pub(super) mod resolved;
@@ -12,7 +13,7 @@ mod turning;
 use super::Scene;
 use super::closed_form;
 use super::collisions;
-use super::columns::{Columns, Missing, Wanted};
+use super::columns::{Columns, Missing, Wanted, Writer};
 use super::continuation::{Continuation, Held};
 use super::integrate::{self, Counts, Ending, Job, Unresolved};
 use super::plan::{Plan, Turning};
@@ -140,6 +141,26 @@ impl Part<'_> {
     fn from(&self) -> Option<(&Continuation, Option<&[usize]>)> {
         let continuation = self.whole.continuation.as_ref().filter(|_| self.plan.from > 0)?;
         Some((continuation, self.members))
+    }
+
+    /// What its units share, where nothing is looked for on the way, and nothing goes on from before or after.
+    fn job<'a>(&'a self, request: &'a Request, writer: &'a Writer<'a>) -> Job<'a> {
+        let Part { scene, plan, .. } = *self;
+        Job {
+            scene,
+            plan,
+            times: &request.times,
+            rtol: plan.rtol(request),
+            asked_rtol: request.rtol,
+            atol: request.atol.as_ref(),
+            max_step: plan.max_step(request),
+            first_step: request.first_step.unwrap_or(f64::MAX),
+            max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
+            watches: false,
+            from: None,
+            keeps: false,
+            writer,
+        }
     }
 
     /// Whether columns can be derived at the record.
@@ -272,21 +293,7 @@ fn run_part(
     }
     check_units(part)?;
     let writer = columns.writer(scene, part.members, plan.threads.1);
-    let job = Job {
-        scene,
-        plan,
-        times: &request.times,
-        rtol: plan.rtol(request),
-        asked_rtol: request.rtol,
-        atol: request.atol.as_ref(),
-        max_step: plan.max_step(request),
-        first_step: request.first_step.unwrap_or(f64::MAX),
-        max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
-        watches: true,
-        from: part.from(),
-        keeps: kept.is_some(),
-        writer: &writer,
-    };
+    let job = Job { watches: true, from: part.from(), keeps: kept.is_some(), ..part.job(request, &writer) };
     let mut reports = integrate::run(&job, ticker)?;
     if let Some(kept) = kept {
         kept.gather(part, &mut reports);

@@ -148,7 +148,7 @@ impl Prepared {
             units,
             scratch: RefCell::default(),
         };
-        if plan.has_own_times() {
+        if plan.has_own_times() || plan.neighbors {
             match prepared.measure(plan, ticker) {
                 // Nothing is integrated any more, but its start can be recorded.
                 Ok(()) | Err(Error::Interrupted) => {}

@@ -232,7 +232,7 @@ fn on_a_node(node: u64) -> bool {
     node > 0 && node < u64::MAX
 }
 
-fn status(ending: &Ending) -> i8 {
+pub(super) fn status(ending: &Ending) -> i8 {
     match ending {
         Ending::Finished => 0,
         Ending::CloseEncounter { .. } => 1,

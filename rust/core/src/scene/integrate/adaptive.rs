@@ -8,7 +8,7 @@ mod ending;
 mod events;
 mod followers;
 mod guide;
-mod measure;
+pub(super) mod measure;
 mod outputs;
 mod part;
 mod sticking;

@@ -15,6 +15,7 @@ impl Plan {
     pub fn passive_apart(&self) -> bool {
         self.groups == Groups::All
             && !self.touching
+            && !self.neighbors
             && !self.turning.steps()
             && (self.has_own_times() || self.relative)
             && !self.active.is_empty()

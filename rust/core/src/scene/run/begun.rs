@@ -54,7 +54,7 @@ impl Begun {
         if let (Some(start), Some(from)) = (Continuation::start(scene, same), &scene.continuation) {
             // What is wrong with the request is told of the scene as it is.
             let _ = same.check(scene)?;
-            let mut begun = Self::planned(&start, request, ticker)?;
+            let mut begun = Self::planned(&start, request, false, ticker)?;
             begun.plans.iter_mut().chain([&mut begun.plan]).for_each(|plan| plan.from = from.node);
             begun.start = Some(start);
             let mut parts = begun.parts(scene).into_iter();
@@ -63,13 +63,19 @@ impl Begun {
                 return Ok(begun);
             }
         }
-        Self::planned(scene, request, ticker)
+        Self::planned(scene, request, false, ticker)
     }
 
-    fn planned(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
-        let plan = Plan::new(scene, request, ticker)?;
+    /// Plans a run from the scene as it is, or that of a scene beside its neighbors.
+    pub(super) fn planned(
+        scene: &Scene,
+        request: &Request,
+        neighbors: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        let plan = Plan::of(scene, request, neighbors, ticker)?;
         let groups = patterns(scene, &plan, ticker)?;
-        let plans = groups.iter().flatten().map(|(_, part)| Plan::new(part, request, ticker));
+        let plans = groups.iter().flatten().map(|(_, part)| Plan::of(part, request, neighbors, ticker));
         let plans = plans.collect::<Result<_>>()?;
         Ok(Self { start: None, plan, groups, plans })
     }

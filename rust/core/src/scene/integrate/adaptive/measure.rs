@@ -127,7 +127,7 @@ pub(super) fn set_momenta(
 }
 
 /// Takes over a unit's measures for its lanes. Without `atol` the tolerance is scale-free: relative to the unit's size.
-pub(super) fn set(norm: &mut Norm<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) {
+pub(in crate::scene::integrate) fn set(norm: &mut Norm<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) {
     if from_their_center(job.plan, unit) {
         weigh(norm, unit, lanes);
     }

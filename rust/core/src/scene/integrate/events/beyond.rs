@@ -1,7 +1,7 @@
 //! States that are told at zeros: on the far side of them, so that a run that goes on from there does not find them again.
 //!
 //! The one idea: a start that is zero for all that its numbers tell is zero ([`Event::rounding_as_told`]); so a state in
-//! which a run ends has behind it what it is beyond, or as good as at.
+//! which a run ends has behind it what it is beyond, or as good as at. It is told at the end of the run, then.
 //!
 //! [`Event::rounding_as_told`]: crate::scene::events::Event::rounding_as_told
 
@@ -9,7 +9,7 @@ use super::super::{Ending, Report};
 use super::search::{Search, Zero};
 use super::{Found, Interpolant, Watch};
 use crate::error::Result;
-use crate::numerics::power_of_two::power_of_two;
+use crate::numerics::power_of_two::{power_of_two, scale};
 use crate::parallel::Ticker;
 use crate::scene::events::{Moving, Sight, What};
 use crate::scene::unit::Prepared;
@@ -19,6 +19,9 @@ const DOUBLINGS: i32 = 36;
 
 /// So many times what a last digit of all numbers makes of an energy is rounding.
 const ROUNDINGS: f64 = 8.0;
+
+/// The end of a run, as steps come to it.
+const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
 
 /// By what part of themselves the numbers change that a function of one's own is made of, to see what their rounding is.
 const NUDGE: f64 = 1.0 / 1_048_576.0;
@@ -51,6 +54,34 @@ impl Search<'_, '_> {
             theta = zero * (1.0 + power_of_two(doubled) * f64::EPSILON);
         }
         Ok(zero)
+    }
+}
+
+impl Search<'_, '_> {
+    /// A zero at the end of the run, to which the function comes from one side for all that the numbers of the state tell: what
+    /// goes on from there takes it for its start, at which nothing comes to zero.
+    pub(super) fn arrival(&self, ticker: &mut Ticker<'_>) -> Result<Option<Zero>> {
+        let (watch, [start, end]) = (&*self.watch, self.ends);
+        let job = watch.job;
+        let last = scale(job.scene.elapsed(job.end()), -job.plan.units.time);
+        let is_last = (self.span.to - last).abs() <= LAST_DIGITS * last.abs();
+        let comes_near = start * end > 0.0 && end.abs() < start.abs();
+        if !is_last || !comes_near || self.event >= watch.events.len() || watch.is_kept(self.event) {
+            return Ok(None);
+        }
+        let moved = self.unit.origin.at(scale(self.span.to, job.plan.units.time));
+        let told = |body: usize| {
+            let place = watch.bodies.indices.iter().position(|other| *other == body);
+            let bodies = place.map_or_else(Moving::default, |place| watch.after[place]);
+            [
+                core::array::from_fn(|c| moved.position[c].0 + bodies.position[c]),
+                core::array::from_fn(|c| moved.velocity[c].0 + bodies.velocity[c]),
+            ]
+        };
+        let seen = (&watch.next[self.event], &watch.after[..], self.span.to);
+        let rounding = watch.rounding_as_told(self.unit, self.event, seen, &told, ticker)?;
+        let arrives = end.abs() <= rounding && start.abs() > rounding && self.counts(start);
+        Ok(arrives.then_some((1.0, start < 0.0)))
     }
 }
 

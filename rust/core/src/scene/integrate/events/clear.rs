@@ -9,6 +9,9 @@ const CLEARANCE: f64 = 0.5;
 /// How far the rates may be off, as a part of that range in the time of a step.
 const SLANT: f64 = 0.125;
 
+/// What ends nearer to zero than this part of that range may be zero for all that a state tells.
+const ENDS: f64 = 1.0 / 1_048_576.0;
+
 /// How often a step is halved, and its halves, to see whether the function keeps clear on all of them.
 const HALVINGS: usize = 4;
 
@@ -46,6 +49,9 @@ pub(super) fn keeps_clear<S: Real>([a, b, c, d]: [S; 4]) -> S::Mask {
 pub(super) fn keeps_clear_after_all(cubic: [f64; 4]) -> bool {
     let [a, b, c, d] = if cubic[0] < 0.0 { cubic.map(|x| -x) } else { cubic };
     let range = a.max(b).max(c.max(d)) - a.min(b).min(c.min(d));
+    if d <= ENDS * range {
+        return false;
+    }
     // 16θ²(1-θ)² of the clearance and θ(1-θ) of the slant, in the basis of the fourth degree.
     let (clearance, slant) = (CLEARANCE * range, SLANT * range);
     let middle = 0.5 * (b + c) - (8.0 * clearance + slant) / 3.0;

@@ -63,6 +63,9 @@ impl Search<'_, '_> {
     /// The zeros of the motion.
     pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
         let mut zeros = self.all_zeros(step, ticker)?;
+        if zeros.last().is_none_or(|&(theta, _)| theta < 1.0 - ONE_ZERO) {
+            zeros.extend(self.arrival(ticker)?);
+        }
         zeros.retain(|&(theta, _)| self.is_of_the_motion(theta));
         // Spheres that touch do not come to that once more; what the motion keeps is rounding everywhere.
         if self.event < self.watch.events.len() && !self.watch.is_kept(self.event) {
@@ -92,13 +95,17 @@ impl Search<'_, '_> {
         0.25 * (start + end) * steps > least && (start.max(end) > least || a_radian)
     }
 
-    /// All zeros.
-    fn all_zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
+    /// Whether the zeros of an event count that the function comes to from a side.
+    pub(super) fn counts(&self, start: f64) -> bool {
         // Upwards along the run backwards is downwards in time.
         let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
-        let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
+        direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0
+    }
+
+    /// All zeros.
+    fn all_zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
         if self.watch.is_kept(self.event) {
-            if !crosses(self.ends[0], self.ends[1]) || !counts(self.ends[0]) {
+            if !crosses(self.ends[0], self.ends[1]) || !self.counts(self.ends[0]) {
                 return Ok(vec![]);
             }
             let ends = [(0.0, self.ends[0]), (1.0, self.ends[1])];
@@ -111,7 +118,7 @@ impl Search<'_, '_> {
             && let Some((theta, slope)) = self.straight(ticker)?
         {
             let mut zeros = Vec::new();
-            if counts(self.ends[0]) {
+            if self.counts(self.ends[0]) {
                 zeros.push((self.one_zero(theta, slope, step, ticker)?, self.ends[0] < 0.0));
             }
             return Ok(zeros);
@@ -164,7 +171,7 @@ impl Search<'_, '_> {
         if let (true, &[bracket]) = (self.watch.terms.is_empty(), &brackets[..])
             && crosses(self.ends[0], self.ends[1])
         {
-            if !counts(self.ends[0]) {
+            if !self.counts(self.ends[0]) {
                 return Ok(Vec::new());
             }
             let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
@@ -187,7 +194,7 @@ impl Search<'_, '_> {
             }
         }
         for [a, b] in told {
-            if counts(a.1) {
+            if self.counts(a.1) {
                 let theta = zero([a, b], |theta| self.value_at(theta, step, ticker))?;
                 zeros.push((self.polished(theta, [a.0, b.0], step, ticker)?, a.1 < 0.0));
             }

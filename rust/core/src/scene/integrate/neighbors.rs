@@ -1,0 +1,300 @@
+//! How far neighbors of motions get: beside each unit runs a small difference of it ([`variation`]).
+//!
+//! The one idea: the motion and the difference are one state, so that both take the same steps, which the motion alone
+//! chooses. Before the difference leaves the range of numbers it is set back to a length of about 1, and the logarithm of what
+//! it has grown is kept.
+
+mod variation;
+
+use super::super::layout::Layout;
+use super::super::unit::{Prepared, Unit};
+use super::adaptive::measure;
+use super::fixed::lay;
+use super::report::Ending;
+use super::{Job, Result};
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::power_of_two::{exponent, power_of_two, scale};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::fixed::place;
+use crate::ode::norm::Norm;
+use crate::ode::state::State;
+use crate::ode::step_control::Clock;
+use crate::ode::stepper::stepper;
+use crate::ode::system::Form;
+use crate::ode::trial::trial;
+use crate::parallel::{Ticker, for_chunks};
+use core::f64::consts::LN_2;
+use variation::Variation;
+
+/// Between which powers of two the length of a difference may be.
+const WIDEST: i32 = 128;
+/// Steps of a fixed length after which that is looked at.
+const STEPS: u64 = 16;
+
+/// What became of a unit and its neighbor.
+pub struct Followed {
+    /// Which copy it is.
+    pub copy: usize,
+    /// The logarithm of what the difference has grown, at each output time; NaN after an end.
+    pub growth: Vec<f64>,
+    /// How it ended.
+    pub ending: Ending,
+}
+
+/// Follows all units of a plan. Where neighbors begin is told by differences of the place and the velocity of each body, in
+/// sizes of its motion.
+///
+/// # Errors
+/// Those of the library itself, and [`Error::Interrupted`](crate::Error::Interrupted).
+pub fn run(job: &Job<'_>, toward: &[[[f64; 3]; 2]], ticker: &mut Ticker<'_>) -> Result<Vec<Followed>> {
+    let units = job.plan.unit_list();
+    let groups: Vec<&[Unit]> = units.chunks(job.plan.layout.units()).collect();
+    let (over, inside) = job.plan.threads;
+    let followed = for_chunks(over, groups.len(), ticker, |group, ticker| {
+        Group::new(job, groups[group], toward, inside, ticker)?.follow(ticker)
+    })?;
+    Ok(followed.into_iter().flatten().collect())
+}
+
+/// Units in lanes, beside their neighbors.
+struct Group<'a> {
+    job: &'a Job<'a>,
+    units: Vec<Prepared>,
+    layout: Layout,
+    variation: Variation,
+    state: State<Lanes>,
+    /// What is to be added to the logarithm of a length.
+    gained: [f64; WIDTH],
+    followed: Vec<Followed>,
+    /// The lanes whose units go on.
+    running: Bits,
+}
+
+impl<'a> Group<'a> {
+    fn new(
+        job: &'a Job<'a>,
+        units: &[Unit],
+        toward: &[[[f64; 3]; 2]],
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        let layout = job.plan.layout;
+        let units: Vec<Prepared> =
+            units.iter().map(|unit| job.prepare(unit, ticker)).collect::<Result<_>>()?;
+        let variation = Variation::new(job.plan, &units, threads);
+        let mut motion = units[0].blank_state(1);
+        lay(job.plan, &units, &mut motion);
+        let mut apart = [motion.q().to_vec(), motion.v().to_vec()];
+        for (apart, kind) in apart.iter_mut().zip([0, 1]) {
+            apart.fill(Lanes::zero());
+            for lane in 0..layout.units() {
+                let unit = &units[lane.min(units.len() - 1)];
+                let size = [unit.size.0, unit.size.1][kind];
+                for (slot, &body) in unit.unit.bodies.iter().enumerate() {
+                    unit.lay(slot, apart, lane, toward[body][kind].map(|x| x * size));
+                }
+            }
+        }
+        let [places, velocities] = apart;
+        let nothing = vec![Lanes::zero(); places.len()];
+        let both = |numbers: &[Lanes], apart: &[Lanes]| [numbers, apart].concat();
+        let numbers = [both(motion.q(), &places), both(motion.v(), &velocities)];
+        let mut state = State::new(&numbers[0], &numbers[1]);
+        let rests = [both(motion.q_compensation(), &nothing), both(motion.v_compensation(), &nothing)];
+        let ((_, q_rest), (_, v_rest)) = state.halves_mut();
+        q_rest.copy_from_slice(&rests[0]);
+        v_rest.copy_from_slice(&rests[1]);
+        let times = job.times.len();
+        let followed = units.iter().map(|unit| Followed {
+            copy: unit.unit.copy,
+            growth: vec![f64::NAN; times],
+            ending: Ending::Finished,
+        });
+        let running = (0..units.len()).fold(Bits(0), |lanes, lane| lanes.or(layout.mask(lane)));
+        let followed = followed.collect();
+        let mut group =
+            Self { job, units, layout, variation, state, gained: [0.0; WIDTH], followed, running };
+        group.gained = group.length(&group.state).0.map(|length| -length.ln());
+        Ok(group)
+    }
+
+    fn follow(mut self, ticker: &mut Ticker<'_>) -> Result<Vec<Followed>> {
+        if self.job.plan.method.adaptive() {
+            self.choosing(ticker)?
+        } else {
+            self.in_equal_steps(ticker)?
+        }
+        Ok(self.followed)
+    }
+
+    /// The lengths of the differences in a state.
+    fn length(&self, state: &State<Lanes>) -> Lanes {
+        let half = self.variation.half();
+        self.variation.length(&state.q()[half..], &state.v()[half..])
+    }
+
+    /// Takes down what differences have grown to at an output time, in some lanes.
+    fn record(&mut self, output: usize, length: &Lanes, lanes: Bits) {
+        for (lane, followed) in self.followed.iter_mut().enumerate() {
+            if lanes.lane(lane) {
+                followed.growth[output] = length.0[lane].ln() + self.gained[lane];
+            }
+        }
+    }
+
+    /// Brings differences of the present state back to a length of about 1 where they leave the range of numbers; in which lanes.
+    fn set_back(&mut self) -> Bits {
+        let length = self.length(&self.state);
+        let mut changed = Bits(0);
+        let mut factors = Lanes::one();
+        for lane in 0..WIDTH {
+            let power = exponent(length.0[lane]);
+            if power.abs() > WIDEST {
+                factors.0[lane] = power_of_two(-power);
+                self.gained[lane] += f64::from(power) * LN_2;
+                changed = changed.or(Bits(1 << lane));
+            }
+        }
+        if changed.any() {
+            let half = self.variation.half();
+            let ((q, q_rest), (v, v_rest)) = self.state.halves_mut();
+            for numbers in [q, q_rest, v, v_rest] {
+                numbers[half..].iter_mut().for_each(|number| *number = *number * factors);
+            }
+        }
+        changed
+    }
+
+    /// Ends the unit in a lane.
+    fn end(&mut self, lane: usize, ending: Ending) {
+        self.running = self.running.and(self.layout.mask(lane).not());
+        self.followed[lane].ending = ending;
+    }
+
+    /// In steps that each unit chooses for itself.
+    fn choosing(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
+        let (job, plan) = (self.job, self.job.plan);
+        let outputs: Vec<f64> =
+            job.times.iter().map(|&t| scale(job.scene.elapsed(t), -plan.units.time)).collect();
+        let shape = self.units[0].state_shape(1);
+        let together = self.layout == Layout::Packed;
+        // What the motion is held to alone.
+        let mut norm = Norm::new(shape, Form::SecondOrder(shape.len()), Lanes::splat(job.rtol), together);
+        for (lane, unit) in self.units.iter().enumerate() {
+            measure::set(&mut norm, job, unit, self.layout.mask(lane));
+        }
+        let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
+        let mut trial = trial(plan.method, &self.variation, &self.state, max_step)?;
+        let end = outputs.last().copied().unwrap_or(0.0);
+        let mut clock = Clock::new(Lanes::splat(end));
+        let mut between = self.state.clone();
+        let mut next = [0; WIDTH];
+        let start = self.length(&self.state);
+        for lane in 0..self.units.len() {
+            while next[lane] < outputs.len() && outputs[next[lane]] == 0.0 {
+                self.record(next[lane], &start, Bits(1 << lane));
+                next[lane] += 1;
+            }
+        }
+        if end == 0.0 {
+            return Ok(());
+        }
+        trial.start(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
+        while self.running.any() {
+            ticker.tick()?;
+            let outcome =
+                trial.attempt(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
+            let mut ready = false;
+            // One output of each lane at a time.
+            loop {
+                let (mut due, mut theta) = (Bits(0), Lanes::one());
+                for lane in 0..self.units.len() {
+                    let (from, h) = (outcome.from.0[lane], outcome.h.0[lane]);
+                    let Some(&output) = outputs.get(next[lane]).filter(|_| outcome.accepted.lane(lane))
+                    else {
+                        continue;
+                    };
+                    let fraction = (output - from) / h;
+                    if fraction <= 1.0 || outcome.finished.lane(lane) {
+                        due = due.or(Bits(1 << lane));
+                        let inside = Lanes::splat(fraction.min(1.0));
+                        theta = Lanes::select(self.layout.mask(lane), inside, theta);
+                    }
+                }
+                if !due.any() {
+                    break;
+                }
+                if !ready {
+                    trial.dense(&outcome, &mut self.variation, &self.state, ticker)?;
+                    ready = true;
+                }
+                trial.at(&outcome, &mut self.variation, &self.state, theta, &mut between, ticker)?;
+                let length = self.length(&between);
+                for (lane, next) in next.iter_mut().enumerate().filter(|(lane, _)| due.lane(*lane)) {
+                    self.record(*next, &length, Bits(1 << lane));
+                    *next += 1;
+                }
+            }
+            trial.keep(outcome.accepted, &mut self.state);
+            let again = self.set_back().and(self.running);
+            if again.any() {
+                trial.start(again, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
+            }
+            for lane in 0..self.units.len() {
+                if !self.running.lane(lane) {
+                    continue;
+                }
+                if outcome.finished.lane(lane) {
+                    self.end(lane, Ending::Finished);
+                } else if outcome.stuck.lane(lane) {
+                    self.end(lane, Ending::NoStep);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// In equal steps, all side by side.
+    fn in_equal_steps(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
+        let (job, plan) = (self.job, self.job.plan);
+        let mut stepper = stepper(plan.method, job.step(), &self.variation, &self.state)?;
+        stepper.restart();
+        let dt = plan.dt.unwrap_or(plan.direction);
+        let (mut node, mut first) = (0, 0);
+        let mut between = self.state.clone();
+        for (output, &t) in job.times.iter().enumerate() {
+            let place = place(job.scene.elapsed(t), dt, Real::max(t.abs(), job.scene.t0.abs()));
+            while node < place.node {
+                ticker.tick()?;
+                let at_most = (place.node - node).min(STEPS);
+                node += stepper.step(node - first, at_most, &mut self.state, &mut self.variation, ticker)?;
+                stepper.settle(&mut self.state);
+                if self.set_back().any() {
+                    first = node;
+                    self.variation.begun = job.step() * node as f64;
+                    stepper.restart();
+                }
+            }
+            stepper.settle(&mut self.state);
+            let length = match place.past {
+                None => self.length(&self.state),
+                Some(past) => {
+                    between.copy_from(&self.state);
+                    let past = scale(past, -plan.units.time);
+                    stepper.between(node - first, past, &mut between, &mut self.variation, ticker)?;
+                    self.length(&between)
+                }
+            };
+            for lane in 0..self.units.len() {
+                if self.running.lane(lane) && !length.0[lane].is_finite() {
+                    self.end(lane, Ending::NotFinite);
+                }
+            }
+            self.record(output, &length, self.running);
+            if !self.running.any() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,227 @@
+//! A motion and a small difference of it as one system: `q'' = a(q, v)`, `δ'' = (∂a/∂q) δ + (∂a/∂v) δ'`.
+//!
+//! The one idea: the derivative of all forces in one direction is a difference of evaluations next to each other, four of
+//! them, so that neither rounding nor the higher derivatives are felt. So every force has it, and the equations of the
+//! difference are linear: its length matters to nobody.
+
+use crate::error::Result;
+use crate::forces::{Dynamics, ForceTerm};
+use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::real::{Mask, Real};
+use crate::ode::system::{Form, Needs, System};
+use crate::parallel::Ticker;
+use crate::scene::layout::Layout;
+use crate::scene::plan::Plan;
+use crate::scene::unit::{Prepared, dynamics};
+use std::sync::Arc;
+
+/// How far apart the states are at which forces are compared, in lengths over which forces change, 2⁻¹²: of forces that fall as
+/// 1/r² the fifth derivatives then leave 1e-13 of a derivative, and rounding leaves 1e-12.
+const APART: f64 = 1.0 / 4096.0;
+/// The weights of the difference over one such length, and over two.
+const WEIGHTS: [(f64, f64); 2] = [(1.0, 8.0 / 12.0), (2.0, -1.0 / 12.0)];
+/// That length is shorter where accelerations are larger than at the start, as those of a body that falls, but not by more, and
+/// longer where they are smaller if nothing acts but what falls as 1/r².
+const LEAST: f64 = 1e-4;
+const MOST: f64 = 1e4;
+
+/// Units beside small differences of them. States hold coordinates of the motion, then as many of the difference; velocities
+/// likewise.
+pub(super) struct Variation {
+    dynamics: Dynamics<Lanes>,
+    /// One over the size of a distance and of a velocity.
+    measures: [Lanes; 2],
+    /// Whether the lanes are bodies of one unit.
+    together: bool,
+    /// How large accelerations are where it begins.
+    at_first: Option<Lanes>,
+    /// By what factor forces may change more slowly than there.
+    slowest: f64,
+    /// What the time was when it began to be counted.
+    pub begun: f64,
+    /// A state, and the accelerations there.
+    places: Vec<Lanes>,
+    velocities: Vec<Lanes>,
+    accelerations: Vec<Lanes>,
+}
+
+impl Variation {
+    /// Of units in the lanes.
+    pub(super) fn new(plan: &Plan, units: &[Prepared], threads: usize) -> Self {
+        let views: Vec<&Prepared> = units.iter().collect();
+        let (dynamics, layout) = (dynamics(plan, &views, threads), plan.layout);
+        let falls =
+            |force: &Arc<dyn ForceTerm>| force.as_newtonian().is_some_and(|(_, softening)| softening == 0.0);
+        let mut measures = [Lanes::one(); 2];
+        for (lane, unit) in units.iter().enumerate() {
+            let lanes = layout.mask(lane);
+            for (measure, size) in measures.iter_mut().zip([unit.size.0, unit.size.1]) {
+                *measure = Lanes::select(lanes, Lanes::splat(1.0 / size), *measure);
+            }
+        }
+        let room = vec![Lanes::zero(); dynamics.shape.len()];
+        Self {
+            dynamics,
+            measures,
+            together: layout == Layout::Packed,
+            at_first: None,
+            slowest: if plan.forces.iter().all(falls) { MOST } else { 1.0 },
+            begun: 0.0,
+            places: room.clone(),
+            velocities: room.clone(),
+            accelerations: room,
+        }
+    }
+
+    /// Numbers of a place, and of its difference.
+    pub(super) const fn half(&self) -> usize {
+        self.dynamics.shape.len()
+    }
+
+    /// The lengths of differences, of places and, where they are known, velocities.
+    pub(super) fn length(&self, places: &[Lanes], velocities: &[Lanes]) -> Lanes {
+        let [of_places, of_velocities] = self.measures;
+        self.root(
+            Lanes::pass(Square { of: places, measure: &of_places })
+                + Lanes::pass(Square { of: velocities, measure: &of_velocities }),
+        )
+    }
+
+    /// The root of a sum of squares over a unit.
+    fn root(&self, squares: Lanes) -> Lanes {
+        if self.together { Lanes::splat(squares.0.iter().sum::<f64>().sqrt()) } else { squares.sqrt() }
+    }
+
+    /// Over what part of the size of a unit forces change, where accelerations are these.
+    fn reach(&mut self, a: &[Lanes]) -> Lanes {
+        let large = self.root(Lanes::pass(Square { of: a, measure: &Lanes::one() }));
+        let at_first = *self.at_first.get_or_insert(large);
+        // Of what falls as 1/r², r. Where nothing acts at the start that tells nothing.
+        let reach = (at_first / large).sqrt().max(Lanes::splat(LEAST)).min(Lanes::splat(self.slowest));
+        let known = Lanes::zero().less(at_first).and(Lanes::zero().less(large));
+        Lanes::select(known, reach, Lanes::one())
+    }
+}
+
+impl System<Lanes> for Variation {
+    fn form(&self) -> Form {
+        Form::SecondOrder(2 * self.half())
+    }
+
+    fn needs(&self) -> Needs {
+        let Needs { time, velocity, rotation } = self.dynamics.needs();
+        Needs { time, velocity: velocity || rotation, rotation: false }
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.dynamics.evaluations()
+    }
+
+    fn stops_midway(&self) -> bool {
+        self.dynamics.stops_midway()
+    }
+
+    fn acceleration(
+        &mut self,
+        t: &Lanes,
+        q: &[Lanes],
+        v: &[Lanes],
+        a: &mut [Lanes],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let half = self.half();
+        let t = *t + Lanes::splat(self.begun);
+        let (q, apart) = q.split_at(half);
+        // Where nobody looks at velocities they may not be there.
+        let (v, parting) = v.split_at(half.min(v.len()));
+        let (a, change) = a.split_at_mut(half);
+        self.dynamics.acceleration(&t, q, v, a, ticker)?;
+        let step = Lanes::splat(APART) * self.reach(a) / self.length(apart, parting);
+        change.fill(Lanes::zero());
+        for (steps, weight) in WEIGHTS {
+            for sign in [1.0, -1.0] {
+                let along = step * Lanes::splat(sign * steps);
+                Lanes::pass(Displace { from: q, along: apart, step: &along, to: &mut self.places });
+                Lanes::pass(Displace {
+                    from: v,
+                    along: parting,
+                    step: &along,
+                    to: &mut self.velocities[..v.len()],
+                });
+                let (q, v) = (&self.places, &self.velocities[..v.len()]);
+                self.dynamics.acceleration(&t, q, v, &mut self.accelerations, ticker)?;
+                let weight = Lanes::splat(sign * weight) / step;
+                Lanes::pass(Accumulate { values: &self.accelerations, weight: &weight, to: change });
+            }
+        }
+        Ok(())
+    }
+
+    fn longest_step(&self, (q, v): (&[Lanes], &[Lanes]), a: &[Lanes]) -> Option<Lanes> {
+        let half = self.half();
+        self.dynamics.longest_step((&q[..half], &v[..half]), &a[..half])
+    }
+}
+
+/// The sum of squares of numbers, each times the measure.
+struct Square<'a, S> {
+    of: &'a [S],
+    measure: &'a S,
+}
+
+impl<S: Element> Pass<S> for Square<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let measure = *V::view_one(self.measure);
+        let mut sum = V::zero();
+        for &number in V::view(self.of) {
+            let number = number * measure;
+            sum = number.multiply_add(number, sum);
+        }
+        sum.store()
+    }
+}
+
+/// `to = from + step·along`.
+struct Displace<'a, S> {
+    from: &'a [S],
+    along: &'a [S],
+    step: &'a S,
+    to: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for Displace<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let step = *V::view_one(self.step);
+        let to = V::view_mut(self.to);
+        let n = to.len();
+        let (from, along) = (&V::view(self.from)[..n], &V::view(self.along)[..n]);
+        for i in 0..n {
+            to[i] = step.multiply_add(along[i], from[i]);
+        }
+    }
+}
+
+/// `to += weight·values`.
+struct Accumulate<'a, S> {
+    values: &'a [S],
+    weight: &'a S,
+    to: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for Accumulate<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let weight = *V::view_one(self.weight);
+        let to = V::view_mut(self.to);
+        let values = &V::view(self.values)[..to.len()];
+        for i in 0..to.len() {
+            to[i] = weight.multiply_add(values[i], to[i]);
+        }
+    }
+}
