@@ -49,6 +49,8 @@ def line_integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], 
         edges = np.concatenate([[0.0], (np.arange(panels - 1) + shift) / (panels - 1), [1.0]])
         s = edges[:-1, None] + np.diff(edges)[:, None] * (0.5 * (_NODES + 1.0))
         places = float_array("path", path(s.ravel()), (s.size, 3))
+        if not np.ptp(places, axis=0).any():
+            return 0.0  # what stays where it is does no work
         forces = float_array("force", at(places), places.shape)
         # dr over half a piece, the unit of the nodes.
         steps = np.einsum("ij,pjc->pic", _DERIVATIVE, places.reshape(panels, -1, 3))
@@ -59,7 +61,10 @@ def line_integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], 
         if abs(total - before) <= rtol * size and (size > 0.0 or panels >= _LOOKED_AT):
             return total
         before, panels = total, 2 * panels
-    raise ConvergenceError(f"the work does not settle to {rtol:g} of it: the field jumps or is singular on the path")
+    raise ConvergenceError(
+        f"the work does not settle to {rtol:g} of it: the field jumps, bends sharply or is "
+        "singular on the path; put corners there"
+    )
 
 
 def time_integral(at: _Field, start: float, end: float, rtol: float) -> NDArray[np.float64]:

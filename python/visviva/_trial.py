@@ -32,6 +32,8 @@ _MOST_STEPS, _FASTER = 10_000, 64
 # Copies of an ensemble that are tried, and pairs in a step beyond which none is tried: it would take too long.
 _COPIES = 32
 _PAIRS = 10**8
+# The longest step of a run in which forces may change within any, as a part of it.
+_LONGEST_STEP = 1.0 / 128.0
 # The columns by their numbers for each copy and time, for N bodies.
 _NUMBERS = {name: axes for name, _, axes, _ in _core.columns()}
 
@@ -61,7 +63,10 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     step = None if asked["time_transformation"] else asked["dt"]
     fraction = min(1.0, abs(step) / span if step is not None and span > 0.0 else 1.0 / 4096.0)
     tried["max_steps"] = _MOST_STEPS
+    # What may change within any step is looked at so often in a run, not in a stretch of it.
+    longest = asked["max_step"] if asked["max_step"] is not None or asked["dt"] is not None else _LONGEST_STEP * span
     while True:
+        tried["max_step"] = asked["max_step"] if fraction == 1.0 else longest
         result, seconds = run_stretch(tried, fraction)
         stats = result["stats"]
         # What comes next may be another motion, as of an orbit that decays: of that nothing is told.
@@ -80,8 +85,10 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     ratio, exact = scale / fraction, scale / fraction == 1.0
     steps = round(stats["steps"] * ratio)
     if step is not None and step != 0.0:
-        # The way to the end from the last node is none.
-        steps, exact = copies * math.floor(span / abs(step) * (1.0 + 1e-12)), True
+        # The way to the end from the last node is none. Bodies that do not know of each other take them one by one.
+        nodes, seen = (math.floor(part * span / abs(step) * (1.0 + 1e-12)) for part in (1.0, fraction))
+        parts = round(stats["steps"] / (few * seen)) if seen else 1
+        steps, exact = copies * nodes * parts, True
         ratio = steps / stats["steps"] if stats["steps"] else scale
     return Cost(steps, round(stats["evaluations"] * ratio), memory, seconds * ratio, exact=exact)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from visviva._html import Sheet, Shown, as_text, briefly
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._constrained_motions import BALANCED, Constrained
+from visviva.generalized._eigenvalues import eigenvalues
 from visviva.generalized._matrices import Sizes, matrices, matrices_along, rounding
 from visviva.generalized._multiple_zeros import at_rest, left_open, units
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Matrices
 
+    _Modes = tuple[NDArray[np.float64], NDArray[np.float64]]
+
 __all__ = [
     "Linearization",
     "along",
@@ -34,7 +37,8 @@ __all__ = [
     "of_matrices",
 ]
 
-#: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
+#: Eigenvalues whose real or imaginary part is below this part of them have none, but for round-off: of a double one half
+#: the digits are known.
 _ON_THE_AXIS = 1e-7
 #: Displacements are along constraints to this part of themselves.
 _ALONG = 1e-8
@@ -112,8 +116,8 @@ class Linearization(Shown):
         if self.squares is not None:
             real: NDArray[np.float64] = np.sqrt(self.squares[self.squares > 0.0])
             return real
-        imaginary: NDArray[np.float64] = np.sort(self.eigenvalues.imag)
-        found: NDArray[np.float64] = imaginary[imaginary > _ON_THE_AXIS * np.abs(self.eigenvalues).max()]
+        oscillates = self.eigenvalues.imag > _ON_THE_AXIS * np.abs(self.eigenvalues)
+        found: NDArray[np.float64] = np.sort(self.eigenvalues.imag[oscillates])
         return found
 
     @property
@@ -284,50 +288,40 @@ def free_matrices(
     return mass, damping, stiffness, along(None if small.tangent is None else np.abs(small.tangent), small.rounding)
 
 
-class Eigenmodes(NamedTuple):
-    """Of M, C and K along free directions: λ (2d), and squares (d) and modes (d, d) where these are real."""
-
-    eigenvalues: NDArray[np.complex128]
-    squares: NDArray[np.float64] | None
-    modes: NDArray[np.float64] | None
-
-
-def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> Eigenmodes:
-    """Give them, or refuse what has no derivatives."""
+def eigenmodes(found: Matrices, tangent: NDArray[np.float64] | None) -> _Modes | None:
+    """Give squares (d) and modes (d, d) where these are real, or refuse what has no derivatives."""
     mass, damping, stiffness = (along(tangent, matrix) for matrix in (found.mass, found.damping, found.stiffness))
-    squares, modes = _core.eigenmodes(mass, damping, stiffness) or (None, None)
-    n = len(mass)
-    first_order = np.zeros((2 * n, 2 * n))
-    first_order[:n, n:] = np.eye(n)
-    with np.errstate(all="ignore"):
-        first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
-    if not np.isfinite(first_order).all():
-        raise InvalidInput("at", "eigenvalues of small motions leave the range of numbers; take other units")
-    # LAPACK takes units for the numbers of a state first, so that rounding of the largest is not that of all.
-    return Eigenmodes(np.linalg.eigvals(first_order).astype(np.complex128), squares, modes)
+    return _core.eigenmodes(mass, damping, stiffness)
 
 
 def of_matrices(
     place: NDArray[np.float64],
     known: tuple[Matrices, NDArray[np.float64], NDArray[np.float64] | None],
-    small: Eigenmodes,
+    small: _Modes | None,
     coordinates: tuple[str, ...],
 ) -> Linearization:
     """Small motions of matrices at a place, known to a rounding of K, along free directions."""
     found, off_by, tangent = known
-    squares, modes = small.squares, small.modes
+    squares, modes = (None, None) if small is None else small
     if modes is not None and tangent is not None:
         modes = modes @ tangent.T
     if squares is not None and modes is not None:
         # Of a level direction rounding makes a square of its own size, and a frequency of its root.
         least = ((np.abs(modes) @ off_by) * np.abs(modes)).sum(axis=1)
         squares = np.where(np.abs(squares) > least, squares, 0.0)
+        roots = np.sqrt(-squares.astype(np.complex128))
+        values = np.concatenate([roots, -roots])
+    else:
+        free = (along(tangent, each) for each in (found.mass, found.damping, found.stiffness))
+        values, _ = eigenvalues(*free, along(None if tangent is None else np.abs(tangent), off_by))
+    if not np.isfinite(values).all():
+        raise InvalidInput("at", "eigenvalues of small motions leave the range of numbers; take other units")
     return Linearization(
         place,
         found.mass,
         found.damping,
         found.stiffness,
-        small.eigenvalues,
+        values,
         modes,
         squares,
         off_by,

@@ -23,7 +23,7 @@ _NUMBERS = 8
 
 
 def modes_table(small: Linearization, axis: float) -> Sheet:
-    """A row for each motion; real parts below `axis` times the largest eigenvalue are those of round-off."""
+    """A row for each motion; parts below `axis` times an eigenvalue are those of round-off."""
     motions = _motions(small, axis)
     rates = [rate for _, rate in motions]
     columns = ["angular frequency", "period"]
@@ -58,9 +58,9 @@ def _motions(small: Linearization, axis: float) -> list[tuple[float, float]]:
     """Of each motion its angular frequency and by which rate its amplitude grows."""
     if small.squares is not None:
         return [(float(np.sqrt(max(s, 0.0))), float(np.sqrt(max(-s, 0.0)))) for s in small.squares]
-    least = axis * float(np.abs(small.eigenvalues).max())
     found = []
     for value in small.eigenvalues:
+        least = axis * abs(value)
         if value.imag < -least:
             # The other one of a pair.
             continue

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva.generalized._eigenvalues import eigenvalues
 from visviva.generalized._higher_orders import curvatures
 from visviva.generalized._matrices import balanced_units
 
@@ -22,9 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["is_stable", "level_and_held"]
 
-#: Eigenvalues whose real part is below this times the largest are on the imaginary axis: of a double zero half the
-#: digits are known.
-_ON_THE_AXIS = 1e-7
+#: Eigenvalues whose real part is below so many times what they may be off are on the imaginary axis.
+_UNSURE = 16.0
 #: Singular values below this part of the largest are zero.
 _LEVEL = 1e-12
 #: The cosine of directions that are at a right angle but for round-off.
@@ -63,12 +63,8 @@ def _block(
     of_mass, of_damping, of_stiffness = lowest
     if of_mass is not None and of_damping is not None and of_stiffness is not None and of_mass > 0.0 <= of_damping:
         return of_stiffness >= 0.0
-    n = len(mass)
-    first_order = np.zeros((2 * n, 2 * n))
-    first_order[:n, n:] = np.eye(n)
-    first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
-    eigenvalues = np.linalg.eigvals(first_order)
-    grows = np.any(eigenvalues.real > _ON_THE_AXIS * np.abs(eigenvalues).max())
+    values, unsure = eigenvalues(mass, damping, stiffness, rounding)
+    grows = (values.real > _UNSURE * unsure).any()
     return not grows and not _is_pushed(np.linalg.solve(mass, stiffness).astype(np.float64))
 
 

@@ -4,10 +4,12 @@
 //! as where a system may be moved as a whole, its least step is taken. The derivatives there, M, C and K of
 //! M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
 
+mod jacobi;
+
 use super::model::{Kind, Model};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Graph, Id, Machine, Node};
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -298,12 +300,11 @@ pub fn modes(matrices: &Matrices, n: usize) -> Result<Option<Modes>> {
             let half = lower.solve_lower_triangular(&stiffness).unwrap_or_else(|| stiffness.clone());
             let whole = lower.solve_lower_triangular(&half.transpose()).unwrap_or(half);
             let whole = (&whole + whole.transpose()) * 0.5;
-            let eigen = SymmetricEigen::try_new(whole, f64::EPSILON, ROTATIONS)?;
-            let vectors =
-                lower.transpose().solve_upper_triangular(&eigen.eigenvectors).unwrap_or(eigen.eigenvectors);
+            let (values, across) = jacobi::eigen(whole)?;
+            let vectors = lower.transpose().solve_upper_triangular(&across).unwrap_or(across);
             let mut order: Vec<usize> = (0..n).collect();
-            order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-            let squares = order.iter().map(|&k| eigen.eigenvalues[k]).collect();
+            order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+            let squares = order.iter().map(|&k| values[k]).collect();
             let rows =
                 order.iter().flat_map(|&k| vectors.column(k).iter().copied().collect::<Vec<f64>>()).collect();
             Some((squares, rows))

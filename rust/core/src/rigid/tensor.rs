@@ -40,12 +40,12 @@ pub fn from_second_moments(second: Matrix) -> Matrix {
 }
 
 /// Σ m r rᵀ, in double-double.
-fn second_moments(parts: impl Iterator<Item = (f64, [f64; 3])>) -> [[DoubleDouble; 3]; 3] {
+fn second_moments(parts: impl Iterator<Item = (f64, [DoubleDouble; 3])>) -> [[DoubleDouble; 3]; 3] {
     let mut sum = [[of(0.0); 3]; 3];
     for (mass, r) in parts {
         for i in 0..3 {
             for j in i..3 {
-                sum[i][j] += DoubleDouble::product(r[i], r[j]) * of(mass);
+                sum[i][j] += r[i] * r[j] * of(mass);
             }
         }
     }
@@ -59,14 +59,14 @@ fn second_moments(parts: impl Iterator<Item = (f64, [f64; 3])>) -> [[DoubleDoubl
 
 /// The inertia tensor of particles about the origin.
 pub fn of_particles(masses: &[f64], positions: &[[f64; 3]]) -> Matrix {
-    let sum = second_moments(masses.iter().copied().zip(positions.iter().copied()));
+    let sum = second_moments(masses.iter().copied().zip(positions.iter().map(|r| r.map(of))));
     from_second_moments(sum.map(|row| row.map(DoubleDouble::to_f64)))
 }
 
 /// What a displacement of the mass adds: m (a² − a aᵀ).
 fn displaced(mass: f64, offset: [f64; 3]) -> Matrix {
     from_second_moments(
-        second_moments(core::iter::once((mass, offset))).map(|row| row.map(DoubleDouble::to_f64)),
+        second_moments(core::iter::once((mass, offset.map(of)))).map(|row| row.map(DoubleDouble::to_f64)),
     )
 }
 
@@ -103,14 +103,15 @@ impl MassProperties {
             let message = format!("expected some mass, got {} in all", number(mass.to_f64()));
             return Err(Error::invalid("mass", message));
         }
-        let center: [f64; 3] = core::array::from_fn(|at| {
+        // Rounded, it would be off by what is large beside bodies that are far from the origin.
+        let center: [DoubleDouble; 3] = core::array::from_fn(|at| {
             let sum = parts
                 .iter()
                 .fold(of(0.0), |sum, part| sum + DoubleDouble::product(part.mass, part.center[at]));
-            (sum / mass).to_f64()
+            sum / mass
         });
         let offsets = parts.iter().map(|part| {
-            let offset: [f64; 3] = core::array::from_fn(|at| part.center[at] - center[at]);
+            let offset = core::array::from_fn(|at| of(part.center[at]) - center[at]);
             (part.mass, offset)
         });
         let more = from_second_moments(second_moments(offsets).map(|row| row.map(DoubleDouble::to_f64)));
@@ -120,7 +121,7 @@ impl MassProperties {
                 (own + of(more[i][j])).to_f64()
             })
         });
-        Ok(Self { mass: mass.to_f64(), center, tensor })
+        Ok(Self { mass: mass.to_f64(), center: center.map(DoubleDouble::to_f64), tensor })
     }
 }
 

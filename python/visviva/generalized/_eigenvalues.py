@@ -1,0 +1,137 @@
+"""Eigenvalues λ of λ²M + λC + K, slow ones beside fast ones.
+
+The one idea: methods for whole matrices err by a rounding of the largest eigenvalue in all of them. Slow ones are the fast
+ones of the equations in 1/λ; and each is then led by Newton's method to where its own matrix is singular, in whose entries
+nothing larger than itself is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["eigenvalues"]
+
+#: Newton's steps to an eigenvalue, and how small the last of them are: to a multiple one they do not become so.
+_STEPS = 12
+_SETTLED = 16.0 * np.finfo(np.float64).eps
+#: An eigenvalue moves by at most this part of itself, and no two come nearer to each other than that of what they were.
+_MOVES = 0.1
+#: Roundings of the entries of M, C and K.
+_ROUNDINGS = 4.0
+
+
+def eigenvalues(
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """Give them (2n), 0 where they are but what K is rounded by, and by how much they may be off.
+
+    They are not finite where they leave the range of numbers.
+    """
+    found = _of_matrices(mass, damping, stiffness)
+    if not np.isfinite(found).all():
+        return found, np.abs(found)
+    led = np.array([_led(mass, damping, stiffness, value) if value.imag >= 0.0 else value for value in found])
+    for index, value in enumerate(found):
+        if value.imag < 0.0:
+            # The other one of a pair.
+            partner = np.flatnonzero(found == value.conjugate())
+            led[index] = led[partner[0]].conjugate() if partner.size else value
+    # Two that are led to one were two.
+    for index in range(len(led)):
+        others = np.arange(len(led)) != index
+        apart = np.abs(found - found[index])[others]
+        if (np.abs(led - led[index])[others] < _MOVES * apart).any():
+            led[index] = found[index]
+    unsure = np.array([_unsure(mass, damping, stiffness, rounding, value) for value in led])
+    return np.where(np.abs(led) > unsure, led, 0.0), unsure
+
+
+def _of_matrices(
+    mass: NDArray[np.float64], damping: NDArray[np.float64], stiffness: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Of the equations of the first order, and the slow half of those of the same equations in 1/λ."""
+    fast = _of_first_order(mass, damping, stiffness)
+    try:
+        slow = _of_first_order(stiffness, damping, mass)
+    except np.linalg.LinAlgError:
+        return fast
+    if not np.isfinite(slow).all() or not slow.any():
+        return fast
+    with np.errstate(all="ignore"):
+        slow = np.where(slow == 0.0, np.inf, 1.0 / slow)
+    sizes = np.abs(fast)
+    middle = np.sqrt(sizes.max()) * np.sqrt(np.abs(slow).min())
+    both = np.concatenate([fast[sizes >= middle], slow[np.abs(slow) < middle]])
+    return both if len(both) == len(fast) and middle > 0.0 else fast
+
+
+def _of_first_order(
+    first: NDArray[np.float64], second: NDArray[np.float64], third: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    n = len(first)
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    with np.errstate(all="ignore"):
+        matrix[n:] = -np.linalg.solve(first, np.hstack([third, second]))
+    if not np.isfinite(matrix).all():
+        return np.full(2 * n, np.nan, dtype=np.complex128)
+    # LAPACK takes units for the numbers of a state first, so that rounding of the largest is not that of all.
+    return np.linalg.eigvals(matrix).astype(np.complex128)
+
+
+def _led(
+    mass: NDArray[np.float64], damping: NDArray[np.float64], stiffness: NDArray[np.float64], start: np.complex128
+) -> complex:
+    """Give where Newton's method for the determinant leads, if it comes to one eigenvalue nearby; else the start."""
+    value = complex(start)
+    real = value.imag == 0.0
+    for _ in range(_STEPS):
+        if value == 0.0:
+            break
+        at = value.real if real else value
+        slope = 2.0 * at * mass + damping
+        try:
+            with np.errstate(all="ignore"):
+                step = 1.0 / np.trace(np.linalg.solve((at * mass + damping) * at + stiffness, slope))
+        except (np.linalg.LinAlgError, ZeroDivisionError):
+            return value
+        if not np.isfinite(step) or abs(value - step - start) > _MOVES * abs(start):
+            break
+        value -= step
+        # Of what hardly decays the real part has its own digits.
+        settled = abs(step) <= _SETTLED * abs(value) and (real or abs(step.real) <= _SETTLED * abs(value.real))
+        if settled:
+            return value
+    return complex(start)
+
+
+def _unsure(
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+    value: complex,
+) -> float:
+    """Give by how much it may be off, as the rounding of K and that of the entries make of it."""
+    at = (value * mass + damping) * value + stiffness
+    left, _, right = np.linalg.svd(at)
+    y, x = np.abs(left[:, -1]), np.abs(right[-1])
+    slope = abs(left[:, -1].conj() @ (2.0 * value * mass + damping) @ right[-1].conj())
+    bend = abs(left[:, -1].conj() @ mass @ right[-1].conj())
+    entries = abs(value) * (abs(value) * np.abs(mass) + np.abs(damping)) + np.abs(stiffness)
+    off_by = float(y @ (rounding + _ROUNDINGS * np.finfo(np.float64).eps * entries) @ x)
+    # Of a multiple one the slope vanishes, and it is off by a root.
+    total = slope + np.sqrt(slope * slope + 4.0 * bend * off_by)
+    return 2.0 * off_by / float(total) if total > 0.0 else 0.0
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
