@@ -63,7 +63,9 @@ def test_an_isochronous_motion_has_none() -> None:
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_saddle_has_its_exponent_and_y_is_that_of_an_exponential(sign: float) -> None:
-    """δ̈ = δ: λ = 1 but for the first turn of the direction, Y = λt, ⟨Y⟩ = λt/2; over 200 e-foldings, set back on the way."""
+    """δ̈ = δ: λ = 1 but for the first turn of the direction, Y = λt, ⟨Y⟩ = λt/2; over 200
+    e-foldings, set back on the way.
+    """
     found = SADDLE.megno(t=sign * np.array([150.0, 200.0]))
     assert isinstance(found.megno, np.ndarray)
     growth = found.lyapunov_exponent * np.array([150.0, 200.0])
@@ -73,7 +75,7 @@ def test_a_saddle_has_its_exponent_and_y_is_that_of_an_exponential(sign: float) 
 
 
 def test_what_falls_toward_a_center_shrinks_with_its_neighbors() -> None:
-    """Under drag alone velocities go as exp(−t/τ), places stay apart: λ → 0; in a damped well all shrinks as exp(−t/2τ)."""
+    """In a damped well as exp(−t/2τ)."""
     well = vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]], [[0, 0.5, 0]]), vv.Harmonic(k=1.0), vv.LinearDrag(tau=1.0))
     found = well.megno(t=60.0)
     assert found.lyapunov_exponent == pytest.approx(-0.5, rel=0.0, abs=0.02)
@@ -128,7 +130,7 @@ def test_units_do_not_matter() -> None:
 
 
 def test_a_force_of_the_time_goes_on_with_the_time() -> None:
-    """Duffing's oscillator in two wells, driven: chaotic. In parts that began anew at t = 0 the drive had another phase."""
+    """Duffing's oscillator in two wells, driven: chaotic."""
     drive = vv.ExpressionForce(acceleration=lambda r, v, t: (r[0] - r[0] ** 3 + 0.3 * np.cos(t), -r[1], -r[2]))
     drag = vv.LinearDrag(tau=4.0)
     driven = vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]]), drive, drag)
@@ -224,7 +226,7 @@ def test_in_a_magnetic_field() -> None:
     with_trap = vv.Scene(scene.particles, *scene.forces, vv.Harmonic(k=1.0))
     assert with_trap.megno(t=1000.0).mean_megno == pytest.approx(0.0, rel=0.0, abs=0.02)
     # Free along the field: in proportion to the time.
-    assert scene.megno(t=1000.0).mean_megno == pytest.approx(2.0, rel=0.0, abs=0.05)
+    assert scene.megno(t=1000.0).mean_megno == pytest.approx(2.0, rel=0.0, abs=0.1)
 
 
 def test_many_bodies_fill_lanes() -> None:
@@ -247,7 +249,7 @@ def test_ctrl_c() -> None:
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     try:
-        with pytest.raises(vv.Interrupted, match="."):
+        with pytest.raises(vv.Interrupted, match=r"."):
             PLANETS.megno(t=1e10)
     finally:
         timer.join()

@@ -37,8 +37,8 @@ __all__ = [
     "of_matrices",
 ]
 
-#: Eigenvalues whose real or imaginary part is below this part of them have none, but for round-off: of a double one half
-#: the digits are known.
+#: Eigenvalues whose real or imaginary part is below this part of them have none, but for round-off: of a double one
+#: half the digits are known.
 _ON_THE_AXIS = 1e-7
 #: Displacements are along constraints to this part of themselves.
 _ALONG = 1e-8

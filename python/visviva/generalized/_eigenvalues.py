@@ -1,8 +1,8 @@
 """Eigenvalues λ of λ²M + λC + K, slow ones beside fast ones.
 
-The one idea: methods for whole matrices err by a rounding of the largest eigenvalue in all of them. Slow ones are the fast
-ones of the equations in 1/λ; and each is then led by Newton's method to where its own matrix is singular, in whose entries
-nothing larger than itself is.
+The one idea: methods for whole matrices err by a rounding of the largest eigenvalue in all of them. Slow ones are the
+fast ones of the equations in 1/λ; and each is then led by Newton's method to where its own matrix is singular, in whose
+entries nothing larger than itself is.
 """
 
 from __future__ import annotations

@@ -64,7 +64,10 @@ mod tests {
             let mut values = found.map(|(values, _)| values).unwrap_or_default();
             values.sort_by(f64::total_cmp);
             let exact = 0.75 * s * s / (1.0 + s * s / 4.0);
-            assert!((values[0] / exact - 1.0).abs() <= 1e-5_f64.min(s * s) + 4.0 * f64::EPSILON, "{values:?}");
+            assert!(
+                (values[0] / exact - 1.0).abs() <= 1e-5_f64.min(s * s) + 4.0 * f64::EPSILON,
+                "{values:?}"
+            );
         }
     }
 
@@ -90,6 +93,8 @@ mod tests {
         let ring = eigen(DMatrix::from_fn(3, 3, |i, j| if i == j { 2.0 } else { -1.0 }));
         let mut values = ring.map(|(values, _)| values).unwrap_or_default();
         values.sort_by(f64::total_cmp);
-        assert!(values[0].abs() <= 1e-15 && (values[1] - 3.0).abs() <= 4e-15 && (values[2] - 3.0).abs() <= 4e-15);
+        assert!(
+            values[0].abs() <= 1e-15 && (values[1] - 3.0).abs() <= 4e-15 && (values[2] - 3.0).abs() <= 4e-15
+        );
     }
 }

@@ -25,6 +25,8 @@ const WEIGHTS: [(f64, f64); 2] = [(1.0, 8.0 / 12.0), (2.0, -1.0 / 12.0)];
 /// longer where they are smaller if nothing acts but what falls as 1/r².
 const LEAST: f64 = 1e-4;
 const MOST: f64 = 1e4;
+/// They are apart by this part of the state at least, wherever that has gone: so much of it rounding leaves alone.
+const OF_STATE: f64 = 1.0 / 1_073_741_824.0;
 
 /// Units beside small differences of them. States hold coordinates of the motion, then as many of the difference; velocities
 /// likewise.
@@ -34,6 +36,8 @@ pub(super) struct Variation {
     measures: [Lanes; 2],
     /// Whether the lanes are bodies of one unit.
     together: bool,
+    /// 1 in the places of bodies, and 0 where there are none.
+    bodies: Vec<Lanes>,
     /// How large accelerations are where it begins.
     at_first: Option<Lanes>,
     /// By what factor forces may change more slowly than there.
@@ -61,10 +65,17 @@ impl Variation {
             }
         }
         let room = vec![Lanes::zero(); dynamics.shape.len()];
+        let mut bodies = room.clone();
+        for (lane, unit) in units.iter().enumerate() {
+            for slot in 0..unit.unit.bodies.len() {
+                unit.lay(slot, &mut bodies, lane, [1.0; 3]);
+            }
+        }
         Self {
             dynamics,
             measures,
             together: layout == Layout::Packed,
+            bodies,
             at_first: None,
             slowest: if plan.forces.iter().all(falls) { MOST } else { 1.0 },
             begun: 0.0,
@@ -137,7 +148,11 @@ impl System<Lanes> for Variation {
         let (v, parting) = v.split_at(half.min(v.len()));
         let (a, change) = a.split_at_mut(half);
         self.dynamics.acceleration(&t, q, v, a, ticker)?;
-        let step = Lanes::splat(APART) * self.reach(a) / self.length(apart, parting);
+        for (place, (&x, &there)) in self.places.iter_mut().zip(q.iter().zip(&self.bodies)) {
+            *place = x * there;
+        }
+        let far = Lanes::splat(OF_STATE) * self.length(&self.places, v);
+        let step = (Lanes::splat(APART) * self.reach(a)).max(far) / self.length(apart, parting);
         change.fill(Lanes::zero());
         for (steps, weight) in WEIGHTS {
             for sign in [1.0, -1.0] {
