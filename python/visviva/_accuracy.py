@@ -217,8 +217,8 @@ def limit_of_energies(asked: dict[str, Any]) -> float:
     return min(TOLERATED, _OF_STEEP_WALLS * asked["rtol"]) if asked["atol"] is None else TOLERATED
 
 
-def warn_of_energy(asked: dict[str, Any], error: float, copy: int | None) -> None:
-    """Warn of a run in generalized coordinates of which a conserved energy at the end is off by as much."""
+def warn_of_energy(asked: dict[str, Any], error: float, copy: int | None, *, at_end: bool = True) -> None:
+    """Warn of a run in generalized coordinates of which a conserved energy is off by as much, at the end or before."""
     whose = "" if copy is None else f"in copy {copy}, "
     dt = asked["dt"]
     if error <= TOLERATED:
@@ -233,7 +233,8 @@ def warn_of_energy(asked: dict[str, Any], error: float, copy: int | None) -> Non
         )
     else:
         cause = _too_long(dt)
-    message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {cause}"
+    where = "at the end" if at_end else "on the way"
+    message = f"{whose}the energy {where} is off by {error:.2g} of kinetic + |potential|: {cause}"
     warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
 

@@ -62,8 +62,8 @@ def line_integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], 
             return total
         before, panels = total, 2 * panels
     raise ConvergenceError(
-        f"the work does not settle to {rtol:g} of it: the field jumps, bends sharply or is "
-        "singular on the path; put corners there"
+        f"the work does not settle to {rtol:g} of it: the field jumps or is singular on the path, or "
+        "bends sharply there; give it corners there"
     )
 
 

@@ -17,6 +17,7 @@ from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva._text import short_repr, table
 from visviva.errors import ConvergenceError, InvalidInput
+from visviva.particles import Particles
 from visviva.request import RunRequest
 from visviva.status import Status
 
@@ -24,14 +25,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.ensemble import EnsembleScene
+    from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.request import MegnoRequest
     from visviva.scene import Scene
+    from visviva.trajectory import Trajectory
 
 __all__ = ["Megno"]
 
 #: Instants at which neighbors are looked at, and where among them each is: no motion keeps step with the golden mean.
 _INSTANTS = 2048
 _GOLDEN = 0.6180339887498949
+#: Instants by which the motion is measured.
+_LOOKS = 64
+#: At so many of them accelerations are.
+_ACCELERATIONS = 8
 
 
 @known_keywords
@@ -99,13 +106,17 @@ def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
     _core.plan(asked)  # refuses times in another order
     instants = _instants(begin, times, asked["dt"])
     toward = np.random.default_rng(seed).normal(size=(len(copies.scene.particles), 2, 3))
-    followed: dict[str, Any] = {**asked, "end_only": False}
+    followed = {**asked, "end_only": False}
+
+    def grown(instants: NDArray[np.float64], sizes: NDArray[np.float64]) -> tuple[NDArray[np.float64], Any]:
+        return _core.neighbors(cast("_core._Request", followed | {"times": instants}), toward, sizes, threads=threads)
+
     # Nobody goes anywhere from the start to the start, but what cannot be followed is refused.
-    _core.neighbors(cast("_core._Request", followed | {"times": np.array([begin])}), toward, threads=threads)
+    grown(np.array([begin]), np.ones((len(copies), 2)))
     # Whatever is wrong with the motion itself, its run says.
-    ended = scene.run(t=times[-1:], **how).status
-    asked_of_core = cast("_core._Request", followed | {"times": instants})
-    logarithm, status = _core.neighbors(asked_of_core, toward, threads=threads)
+    motion = scene.run(t=[begin, *instants[:: len(instants) // _LOOKS + 1], times[-1]], **how)
+    logarithm, status = grown(instants, _sizes(scene, motion))
+    ended = motion.status
     if alone and status[0] != Status.OK:
         raise ConvergenceError("the step of a neighbor fell to zero", float(instants[np.isfinite(logarithm[0])][-1]))
     reached = np.append(begin, instants)
@@ -120,6 +131,42 @@ def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
         times, rows = float(times[-1]), rows[-1]
     every = {name: values[:, rows] for name, values in every.items()} | {"status": status}
     return Megno(times, **{name: values[0] for name, values in every.items()} if alone else every)
+
+
+def _sizes(scene: Scene | EnsembleScene, motion: Trajectory | EnsembleTrajectory) -> NDArray[np.float64]:
+    """Over which length a motion bends, and how fast it is, of each copy (B, 2); zeros where bodies act on each other.
+
+    Of what bends, v²/a, as the radius of a circle; of what does not, how far it goes about its middle.
+    """
+    from visviva.trajectory import Trajectory
+
+    copies = [scene] if isinstance(motion, Trajectory) else list(scene)  # type: ignore[arg-type]
+    found = np.zeros((len(copies), 2))
+    if any(_core.acts_between(force) for force in copies[0]._keywords["forces"]):
+        return found
+    shape = (len(copies), len(motion.t), -1, 3)
+    position, velocity = motion.position.reshape(shape), motion.velocity.reshape(shape)
+    for copy, own in enumerate(copies):
+        rows = np.flatnonzero(np.isfinite(position[copy]).all(axis=(1, 2)))
+        x, v = position[copy][rows], velocity[copy][rows]
+        extent, speed = (float(np.sqrt(np.square(each - each.mean(axis=(0, 1))).sum(axis=2).mean())) for each in (x, v))
+        some = np.unique(np.linspace(0, len(rows) - 1, _ACCELERATIONS).astype(int))
+        bent = np.mean(
+            [
+                np.square(own._like(_at(own, x[k], v[k]), own.forces, float(motion.t[rows[k]])).acceleration())
+                .sum(axis=1)
+                .mean()
+                for k in some
+            ]
+        )
+        radius = speed * speed / float(np.sqrt(bent)) if bent > 0.0 else np.inf
+        found[copy] = min(extent, radius), speed
+    return found
+
+
+def _at(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Particles:
+    bodies = scene.particles
+    return Particles(bodies.mass, position, velocity, bodies.names, bodies.radius)
 
 
 def _instants(begin: float, asked: NDArray[np.float64], dt: float | None) -> NDArray[np.float64]:

@@ -257,3 +257,27 @@ def test_third_law_far_from_the_origin() -> None:
     forces[0, 1], forces[1, 0] = along, -along
     assert vv.audit.third_law(place, forces).strong
     assert not vv.audit.third_law(place - [1.5e11, 0.0, 0.0], forces).strong
+
+
+@pytest.mark.parametrize("bend", [1e-10, 1.0, 1e12])
+def test_the_curl_at_the_origin(bend: float) -> None:
+    """Where places have no size, over which length a field bends only it knows."""
+
+    def turning(r: np.ndarray) -> np.ndarray:
+        return np.stack([np.cos(r[:, 1] / bend - 1), np.cos(r[:, 0] / bend + 2), 0 * r[:, 2] - 9.81], axis=-1)
+
+    found = vv.audit.curl(turning, [[0.0, 0.0, 0.0]])
+    # −sin 2 − sin 1 over the length: differences of fourth order tell seven digits and more of it, beside 9.81.
+    np.testing.assert_allclose(found.value * bend, [[0.0, 0.0, -np.sin(2.0) - np.sin(1.0)]], rtol=1e-7, atol=1e-7)
+    assert not found.conservative
+    still = vv.audit.curl(vv.UniformField((0, 0, -9.8)), [[0.0, 0.0, 0.0]])
+    assert still.conservative
+    assert np.abs(still.value).max() < 1e-12
+    assert vv.audit.curl(vv.Harmonic(k=3.0), [[0.0, 0.0, 0.0]]).conservative
+
+
+def test_work_along_paths_that_stand_still() -> None:
+    pull = vv.Harmonic(k=1.0)
+    assert vv.audit.work(pull, [[1.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]) == pytest.approx(-1.5, rel=1e-14, abs=0.0)
+    assert vv.audit.work(pull, [[1.0, 0, 0], [1.0, 0, 0]]) == 0.0
+    assert vv.audit.work(pull, lambda s: np.ones((len(s), 3))) == 0.0

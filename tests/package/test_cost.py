@@ -113,3 +113,26 @@ def test_bodies_with_steps_of_their_own_are_counted_by_more_than_one_each(massle
     assert cost is not None
     # Circles, whose steps do not change: a last one is broken (measured: 0, 0 and 0.7 %).
     assert cost.steps == pytest.approx(scene.run(t=100.0).stats.steps, rel=0.03, abs=0)
+
+
+def test_bodies_that_do_not_know_of_each_other_take_their_steps_one_by_one() -> None:
+    bodies = vv.Particles(np.ones(10), np.arange(30.0).reshape(10, 3))
+    scene = vv.Scene(bodies, vv.Harmonic(k=1.0))
+    cost, out = scene.plan(t=1000.0, method="rk4", dt=0.01).cost(), scene.run(t=1000.0, method="rk4", dt=0.01)
+    assert cost is not None
+    assert cost.exact
+    assert cost.steps == out.stats.steps
+    assert cost.evaluations == out.stats.evaluations
+
+
+@pytest.mark.parametrize("t", [20.0, 200.0])
+def test_steps_that_are_bounded_by_the_run_are_not_bounded_by_a_stretch_of_it(t: float) -> None:
+    """Beside an ExpressionForce a step is at most 1/128 of the run: the trial took as many in each of its stretches."""
+    rng = np.random.default_rng(0)
+    bodies = vv.Particles(np.ones(10), 2.0 * rng.normal(size=(10, 3)), 0.3 * rng.normal(size=(10, 3)))
+    trap = vv.ExpressionForce(potential=lambda r, v, t: 0.1 * r[0] ** 4)
+    scene = vv.Scene(bodies, trap, vv.PairPotential(vv.potentials.Yukawa(k=0.1, length=1.0)))
+    cost = scene.plan(t=t).cost()
+    assert cost is not None
+    # What comes after the stretch may be another motion.
+    assert cost.steps == pytest.approx(scene.run(t=t).stats.steps, rel=1.0, abs=0.0)

@@ -366,3 +366,17 @@ def test_tensors_are_symmetric_but_for_rounding(unit):
     ):
         with pytest.raises(vv.InvalidInput, match=r"tensor: expected a symmetric tensor, but tensor\[0, 1\] = "):
             refused()
+
+
+@pytest.mark.parametrize("far", [1e6, 1e9, 1e12, 1e14])
+def test_particles_far_from_the_origin_have_the_tensor_of_those_near_it(far: float) -> None:
+    """The differences of these places are exact, and so is what they are about."""
+    near = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.25, 2.0, 0.0]])
+    place = near + far * np.array([1.0, -3.0, 2.0])
+    mass = [1.3, 0.7, 2.1]
+    away, here = vv.rigid.particles(mass, place), vv.rigid.particles(mass, place - place[0])
+    np.testing.assert_allclose(away.tensor, here.tensor, rtol=1e-15, atol=1e-15)
+    together = vv.rigid.composite([away, vv.rigid.particles([1.0], place[:1])])
+    beside = vv.rigid.composite([here, vv.rigid.particles([1.0], [[0.0, 0.0, 0.0]])])
+    # The center of the first is a place that is told in numbers, which are so far apart there.
+    np.testing.assert_allclose(together.tensor, beside.tensor, rtol=0.0, atol=8.0 * np.spacing(3.0 * far) + 1e-14)

@@ -19,6 +19,13 @@ __all__ = ["eigenvalues"]
 #: Newton's steps to an eigenvalue, and how small the last of them are: to a multiple one they do not become so.
 _STEPS = 12
 _SETTLED = 16.0 * np.finfo(np.float64).eps
+#: Eigenvalues below this part of the largest are slow.
+_SLOW = 1e-2
+#: Partners in two lists that agree alike are those of the same rank.
+_BY_RANK = 1e-6
+#: Of more coordinates than this, eigenvalues are those of methods for whole matrices, to this part of the largest.
+_MOST = 32
+_OF_THE_LARGEST = 1e-7
 #: An eigenvalue moves by at most this part of itself, and no two come nearer to each other than that of what they were.
 _MOVES = 0.1
 #: Roundings of the entries of M, C and K.
@@ -35,6 +42,10 @@ def eigenvalues(
 
     They are not finite where they leave the range of numbers.
     """
+    if len(mass) > _MOST:
+        found = _of_first_order(mass, damping, stiffness)
+        least = np.full(len(found), _OF_THE_LARGEST * np.abs(found).max())
+        return np.where(np.abs(found) > least, found, 0.0), least
     found = _of_matrices(mass, damping, stiffness)
     if not np.isfinite(found).all():
         return found, np.abs(found)
@@ -57,8 +68,10 @@ def eigenvalues(
 def _of_matrices(
     mass: NDArray[np.float64], damping: NDArray[np.float64], stiffness: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    """Of the equations of the first order, and the slow half of those of the same equations in 1/λ."""
+    """Of the equations of the first order, and slow ones of the same equations in 1/λ, if there are any."""
     fast = _of_first_order(mass, damping, stiffness)
+    if np.isfinite(fast).all() and np.abs(fast).min() > _SLOW * np.abs(fast).max():
+        return fast
     try:
         slow = _of_first_order(stiffness, damping, mass)
     except np.linalg.LinAlgError:
@@ -67,10 +80,27 @@ def _of_matrices(
         return fast
     with np.errstate(all="ignore"):
         slow = np.where(slow == 0.0, np.inf, 1.0 / slow)
+    return _fast_or_slow(fast, slow)
+
+
+def _fast_or_slow(fast: NDArray[np.complex128], slow: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Give those of the one list that are fast, and of the other that are slow: each has a partner in the other."""
     sizes = np.abs(fast)
     middle = np.sqrt(sizes.max()) * np.sqrt(np.abs(slow).min())
-    both = np.concatenate([fast[sizes >= middle], slow[np.abs(slow) < middle]])
-    return both if len(both) == len(fast) and middle > 0.0 else fast
+    with np.errstate(all="ignore"):
+        apart = np.abs(fast[:, None] - slow) / (sizes[:, None] + np.abs(slow))
+    # What rounding has made of slow ones in the first list, and of fast ones in the other, has its place by its size.
+    ranks = [np.argsort(np.argsort(each)) for each in (sizes, np.abs(slow))]
+    apart = np.where(np.isnan(apart), 1.0, apart) + _BY_RANK * np.abs(ranks[0][:, None] - ranks[1])
+    found = fast.copy()
+    left, right = np.ones(len(fast), dtype=bool), np.ones(len(slow), dtype=bool)
+    # Partners that agree best first.
+    for one, other in zip(*np.unravel_index(np.argsort(apart, axis=None), apart.shape), strict=True):
+        if left[one] and right[other]:
+            left[one] = right[other] = False
+            if np.abs(slow[other]) < middle:
+                found[one] = slow[other]
+    return found
 
 
 def _of_first_order(
@@ -122,12 +152,13 @@ def _unsure(
 ) -> float:
     """Give by how much it may be off, as the rounding of K and that of the entries make of it."""
     at = (value * mass + damping) * value + stiffness
-    left, _, right = np.linalg.svd(at)
+    left, sizes, right = np.linalg.svd(at)
     y, x = np.abs(left[:, -1]), np.abs(right[-1])
     slope = abs(left[:, -1].conj() @ (2.0 * value * mass + damping) @ right[-1].conj())
     bend = abs(left[:, -1].conj() @ mass @ right[-1].conj())
     entries = abs(value) * (abs(value) * np.abs(mass) + np.abs(damping)) + np.abs(stiffness)
-    off_by = float(y @ (rounding + _ROUNDINGS * np.finfo(np.float64).eps * entries) @ x)
+    # What is left where it is none counts, too.
+    off_by = 2.0 * float(sizes[-1]) + float(y @ (rounding + _ROUNDINGS * np.finfo(np.float64).eps * entries) @ x)
     # Of a multiple one the slope vanishes, and it is off by a root.
     total = slope + np.sqrt(slope * slope + 4.0 * bend * off_by)
     return 2.0 * off_by / float(total) if total > 0.0 else 0.0

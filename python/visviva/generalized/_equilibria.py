@@ -25,7 +25,9 @@ from visviva.generalized._searches import (
     by_sizes,
     distinguishing_coordinates,
     starts_of_a_search,
+    turned,
     where_something_acts,
+    within,
 )
 from visviva.generalized._stability import level_and_held
 
@@ -39,8 +41,6 @@ __all__ = ["Equilibrium", "equilibria"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
-#: Coordinates within a turn.
-_A_TURN = np.pi + 1e-6
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -109,7 +109,7 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool)
             reached = reached[where_something_acts(lambda at: matrices_along(system, at), reached, starts, n)]
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
-        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= _A_TURN]
+        reached = reached[(np.abs(reached) <= _within(system)).all(axis=1)]
     results: list[Equilibrium] = []
     without_mass, without_slopes = [], []
     for place in _once(reached, starts, distinguishing):
@@ -223,13 +223,20 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
     if not insist:
         # Thousands of starts may have run away from each other to where nothing acts.
-        within = [np.abs(each[:, distinguishing_coordinates(system)]) <= _A_TURN for each in (told, nearly)]
-        told, nearly = told[within[0].all(axis=1)], nearly[within[1].all(axis=1)]
+        distinguishing, most = distinguishing_coordinates(system), _within(system)
+        near = [(np.abs(each) <= most)[:, distinguishing] for each in (told, nearly)]
+        told, nearly = told[near[0].all(axis=1)], nearly[near[1].all(axis=1)]
     told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)
     if not len(told) and not np.isfinite(matrices_along(system, starts)[0]).all(axis=1).any():
         # Forces that have no value at rest, as those of dry friction, are told by name.
         linearization(system, starts[0], sizes)
     return told
+
+
+def _within(system: Lagrangian) -> NDArray[np.float64]:
+    n = len(system.coordinates)
+    start = np.zeros(n) if system.position is None else system._start()[:n]
+    return within(start, matrices_along(system, turned(start))[1])
 
 
 def _leaves(system: Lagrangian, small: Linearization, sizes: Sizes) -> bool:

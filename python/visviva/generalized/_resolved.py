@@ -103,12 +103,15 @@ def warn_if_unresolved(
         if not errors[copy] > limit:
             return
         # A motion that begins at rest and comes back has no energies at its ends to be compared with.
-        size = max(sizes[copy], _largest(done, int(copy)))
-        error = float(changes[copy] / size)
+        largest, change = _on_the_way(done, int(copy))
+        size = max(sizes[copy], largest)
+        # What has blown up may come near to where it began.
+        at_end = bool(changes[copy] > limit * size) or change <= limit * size
+        error = float((changes[copy] if at_end else change) / size)
         if limit < error <= TOLERATED:
             error -= _rounding(done, int(copy)) / size
         if error > limit:
-            warn_of_energy(asked, error, int(copy) if copies > 1 else None)
+            warn_of_energy(asked, error, int(copy) if copies > 1 else None, at_end=at_end)
             return
 
 
@@ -216,14 +219,16 @@ def _rounding(done: _Done, copy: int) -> float:
     return _ROUNDINGS * of_state + float(of_sum)
 
 
-def _largest(done: _Done, copy: int) -> float:
-    """The largest size of energies of a copy on the way to its end, which is run again for it."""
+def _on_the_way(done: _Done, copy: int) -> tuple[float, float]:
+    """The largest size of energies of a copy on the way to its end, which is run again, and their largest change."""
     system, (_, t) = done.system, done.lasts
     outputs = np.linspace(system.t0, t, _ON_THE_WAY)
     way = {"outputs": outputs, "span": (system.t0, t)}
     states = done.again(way, done.starts, slice(copy, copy + 1))[0]
-    _, sizes = _energies(system, outputs[: len(states)], states, np.tile(done.values[copy], (len(states), 1)))
-    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
+    energies, sizes = _energies(system, outputs[: len(states)], states, np.tile(done.values[copy], (len(states), 1)))
+    known = np.isfinite(sizes)
+    changes = np.abs(energies - energies[:1])
+    return tuple(float(np.max(each, initial=0.0, where=known)) for each in (sizes, changes))  # type: ignore[return-value]
 
 
 def _energies(

@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["SAME", "by_sizes", "distinguishing_coordinates", "starts_of_a_search", "where_something_acts"]
+__all__ = [
+    "SAME",
+    "by_sizes",
+    "distinguishing_coordinates",
+    "starts_of_a_search",
+    "turned",
+    "where_something_acts",
+    "within",
+]
 
 #: Places that differ by less than this part of their sizes are one.
 SAME = 1e-8
@@ -37,6 +45,28 @@ _ASIDE = 1e-3 * np.pi
 _UNDERFLOWN = float(np.finfo(float).tiny / np.finfo(float).eps)
 #: A place is known to this part of the size of the starts.
 _LOST = 1e-14
+#: Coordinates within a turn.
+_A_TURN = np.pi + 1e-6
+#: What differs by less than this part after a turn is the same.
+_REPEATS = 1e-9
+#: How far off equilibria are told of coordinates that are no angles, in units of where the system starts.
+_AS_FAR = 4.0
+
+
+def turned(start: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give a place (n,), and the same after a turn of each coordinate, shape (n + 1, n)."""
+    return np.vstack([start, start + 2.0 * np.pi * np.eye(len(start))])
+
+
+def within(start: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far off each coordinate may be (n,): angles a turn, others about as far as the system starts, too.
+
+    Which is which is told by the slopes of forces at the places of `turned`.
+    """
+    rows = slopes.reshape(len(slopes), -1)
+    with np.errstate(all="ignore"):
+        is_angle = np.abs(rows[1:] - rows[0]).max(axis=1) <= _REPEATS * np.abs(rows[0]).max(initial=0.0)
+    return np.where(is_angle, _A_TURN, np.fmax(_A_TURN, _AS_FAR * np.abs(start)))
 
 
 def starts_of_a_search(n: int) -> NDArray[np.float64]:

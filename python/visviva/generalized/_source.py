@@ -84,6 +84,8 @@ def described(
     for what, each in (("coordinates", names), ("parameters", keys)):
         if len(set(each)) < len(each):
             raise InvalidInput(what, f"expected different names, got {list(each)}")
+    if "t" in keys:
+        raise InvalidInput("parameters", "t is the time; give the parameter another name")
     if "t" in names:
         raise InvalidInput("coordinates", "t is the time; give the coordinate another name")
     shared = [key for key in keys if key in names]
@@ -147,9 +149,11 @@ def _coordinate(sp: Any, value: Any) -> Any:
         return value
     if isinstance(value, sp.core.function.AppliedUndef) and value.args == (time._sympy_(),):
         return value
+    of_another = isinstance(value, sp.core.function.AppliedUndef) and len(value.args) == 1
+    cure = ", which is no function of the time: that is vv.time, Symbol('t') without assumptions" if of_another else ""
     raise InvalidInput(
         "coordinates",
-        f"expected coordinates as vv.coordinate('theta') makes them, or symbols with velocities=, got {value!r}",
+        f"expected coordinates as vv.coordinate('theta') makes them, or symbols with velocities=, got {value!r}{cure}",
     )
 
 

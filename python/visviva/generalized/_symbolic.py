@@ -209,6 +209,9 @@ class Symbols:
         if tree.is_Add or tree.is_Mul or tree.is_Pow:
             operation = "sum" if tree.is_Add else "product" if tree.is_Mul else "power"
             return nodes.add(operation, tuple(self._walk(argument, part) for part in tree.args))
+        if tree.is_Symbol and tree.name == self._time.name:
+            # The time, whatever is assumed of it.
+            return self._known[self._time]
         if tree.is_Symbol:
             raise InvalidInput(argument, f"free symbol {str(tree)!r} has no value; pass parameters={{{tree}: …}}")
         if isinstance(tree, sp.Derivative):

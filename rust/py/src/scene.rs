@@ -26,7 +26,7 @@ use visviva_core::parallel::thread_count;
 use visviva_core::scene::Scene;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::refuse_frames;
-use visviva_core::scene::run::neighbors::follow;
+use visviva_core::scene::run::neighbors::{Toward, follow};
 use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
 /// Plans a run without running it.
@@ -68,16 +68,19 @@ pub(crate) fn run<'py>(
 
 /// What neighbors of the copies of a scene do: logarithms of their growth, and how each copy ended.
 #[pyfunction]
-#[pyo3(signature = (asked, toward, *, threads))]
+#[pyo3(signature = (asked, toward, sizes, *, threads))]
 pub(crate) fn neighbors<'py>(
     py: Python<'py>,
     asked: Asked<'py>,
     toward: Array<'py>,
+    sizes: Array<'py>,
     threads: Option<i64>,
 ) -> PyResult<(Bound<'py, numpy::PyArrayDyn<f64>>, Bound<'py, numpy::PyArrayDyn<i8>>)> {
     let (scene, request, _) = asked.prepared(threads)?;
     let (toward, _) = copied("toward", &toward, [Some(scene.particles), Some(2), Some(3)])?;
-    let toward: Vec<[[f64; 3]; 2]> = points(&toward).as_chunks::<2>().0.to_vec();
+    let (sizes, _) = copied("sizes", &sizes, [Some(scene.copies), Some(2)])?;
+    let (directions, sizes) = (points(&toward), sizes.as_chunks::<2>().0);
+    let toward = Toward { directions: directions.as_chunks::<2>().0, sizes };
     let grown = compute(py, 0, None, |ticker| follow(&scene, &request, &toward, ticker))?.whole(py)?;
     let status = grown.iter().map(|copy| status(&copy.ending)).collect();
     let shape = [grown.len(), request.times.len()];

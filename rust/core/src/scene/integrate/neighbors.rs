@@ -1,7 +1,6 @@
 //! How far neighbors of motions get: beside each unit runs a small difference of it ([`variation`]).
 //!
-//! The one idea: the motion and the difference are one state, so that both take the same steps, which the motion alone
-//! chooses. Before the difference leaves the range of numbers it is set back to a length of about 1, and the logarithm of what
+//! The one idea: the motion and the difference are one state, so that both take the same steps. Before the difference leaves the range of numbers it is set back to a length of about 1, and the logarithm of what
 //! it has grown is kept.
 
 mod variation;
@@ -12,11 +11,12 @@ use super::adaptive::measure;
 use super::fixed::lay;
 use super::report::Ending;
 use super::{Job, Result};
+use crate::forces::term::Coupling;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::fixed::place;
-use crate::ode::norm::Norm;
+use crate::ode::norm::{Block, Norm};
 use crate::ode::state::State;
 use crate::ode::step_control::Clock;
 use crate::ode::stepper::stepper;
@@ -24,10 +24,12 @@ use crate::ode::system::Form;
 use crate::ode::trial::trial;
 use crate::parallel::{Ticker, for_chunks};
 use core::f64::consts::LN_2;
-use variation::Variation;
+use variation::{Size, Variation};
 
 /// Between which powers of two the length of a difference may be.
 const WIDEST: i32 = 128;
+/// What a step may be off in a difference, as a part of it: more than rounding of a derivative in a deep encounter.
+const OF_DIFFERENCES: f64 = 1e-5;
 /// Steps of a fixed length after which that is looked at.
 const STEPS: u64 = 16;
 
@@ -41,12 +43,19 @@ pub struct Followed {
     pub ending: Ending,
 }
 
-/// Follows all units of a plan. Where neighbors begin is told by differences of the place and the velocity of each body, in
-/// sizes of its motion.
+/// From where neighbors begin, and how far they may be.
+pub struct Toward<'a> {
+    /// Differences of the place and the velocity of each body, in sizes of the motion.
+    pub directions: &'a [[[f64; 3]; 2]],
+    /// How far each copy goes about its middle, and how fast. Bodies on which nothing but fields act have no other size.
+    pub sizes: &'a [[f64; 2]],
+}
+
+/// Follows all units of a plan.
 ///
 /// # Errors
 /// Those of the library itself, and [`Error::Interrupted`](crate::Error::Interrupted).
-pub fn run(job: &Job<'_>, toward: &[[[f64; 3]; 2]], ticker: &mut Ticker<'_>) -> Result<Vec<Followed>> {
+pub fn run(job: &Job<'_>, toward: &Toward<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Followed>> {
     let units = job.plan.unit_list();
     let groups: Vec<&[Unit]> = units.chunks(job.plan.layout.units()).collect();
     let (over, inside) = job.plan.threads;
@@ -74,24 +83,37 @@ impl<'a> Group<'a> {
     fn new(
         job: &'a Job<'a>,
         units: &[Unit],
-        toward: &[[[f64; 3]; 2]],
+        toward: &Toward<'_>,
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let layout = job.plan.layout;
         let units: Vec<Prepared> =
             units.iter().map(|unit| job.prepare(unit, ticker)).collect::<Result<_>>()?;
-        let variation = Variation::new(job.plan, &units, threads);
+        let alone = job.plan.forces.iter().all(|force| force.coupling() == Coupling::None);
+        let size = |unit: &Prepared| {
+            let [place, velocity] = toward.sizes[unit.unit.copy];
+            let of = job.plan.units;
+            let size = Size {
+                place: scale(place, -of.length),
+                velocity: scale(velocity, of.velocity()),
+                of_motion: true,
+            };
+            let known = alone && size.place > 0.0 && size.velocity > 0.0;
+            if known { size } else { Size { place: unit.size.0, velocity: unit.size.1, of_motion: false } }
+        };
+        let sizes: Vec<Size> = units.iter().map(size).collect();
+        let variation = Variation::new(job.plan, &units, &sizes, threads);
         let mut motion = units[0].blank_state(1);
         lay(job.plan, &units, &mut motion);
         let mut apart = [motion.q().to_vec(), motion.v().to_vec()];
         for (apart, kind) in apart.iter_mut().zip([0, 1]) {
             apart.fill(Lanes::zero());
             for lane in 0..layout.units() {
-                let unit = &units[lane.min(units.len() - 1)];
-                let size = [unit.size.0, unit.size.1][kind];
+                let at = lane.min(units.len() - 1);
+                let (unit, size) = (&units[at], [sizes[at].place, sizes[at].velocity][kind]);
                 for (slot, &body) in unit.unit.bodies.iter().enumerate() {
-                    unit.lay(slot, apart, lane, toward[body][kind].map(|x| x * size));
+                    unit.lay(slot, apart, lane, toward.directions[body][kind].map(|x| x * size));
                 }
             }
         }
@@ -178,11 +200,21 @@ impl<'a> Group<'a> {
             job.times.iter().map(|&t| scale(job.scene.elapsed(t), -plan.units.time)).collect();
         let shape = self.units[0].state_shape(1);
         let together = self.layout == Layout::Packed;
-        // What the motion is held to alone.
+        // The motion is held to what it is held to alone.
         let mut norm = Norm::new(shape, Form::SecondOrder(shape.len()), Lanes::splat(job.rtol), together);
         for (lane, unit) in self.units.iter().enumerate() {
             measure::set(&mut norm, job, unit, self.layout.mask(lane));
         }
+        // And the difference, less closely: where a motion rests it alone tells how long steps may be.
+        let half = self.variation.half();
+        let apart = norm.blocks.clone().into_iter().map(|block| Block {
+            start: half,
+            atol: vec![Lanes::zero()],
+            reference: [Lanes::zero(); 4],
+            drift: [Lanes::zero(); 4],
+            ..block
+        });
+        norm.blocks.extend(apart);
         let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
         let mut trial = trial(plan.method, &self.variation, &self.state, max_step)?;
         let end = outputs.last().copied().unwrap_or(0.0);
@@ -199,9 +231,17 @@ impl<'a> Group<'a> {
         if end == 0.0 {
             return Ok(());
         }
+        let allowed = Lanes::splat(OF_DIFFERENCES) * start;
+        for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
+            block.atol[0] = allowed * size;
+        }
         trial.start(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
         while self.running.any() {
             ticker.tick()?;
+            let allowed = Lanes::splat(OF_DIFFERENCES) * self.length(&self.state);
+            for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
+                block.atol[0] = allowed * size;
+            }
             let outcome =
                 trial.attempt(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
             let mut ready = false;

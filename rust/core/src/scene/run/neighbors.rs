@@ -2,6 +2,7 @@
 
 use super::super::Scene;
 use super::super::columns::{Columns, Wanted};
+pub use super::super::integrate::neighbors::Toward;
 use super::super::integrate::{Ending, neighbors};
 use super::super::request::Request;
 use super::begun::Begun;
@@ -18,24 +19,19 @@ pub struct Grown {
     pub ending: Ending,
 }
 
-/// Follows copies of a scene and neighbors of them, which begin in the direction of small differences of the place and the
-/// velocity of each body, in sizes of the motion.
+/// Follows copies of a scene and neighbors of them.
 ///
 /// # Errors
-/// Bad input, before anything runs: what `Plan::new` refuses, rigid bodies, methods that know no neighbors, a direction of no
-/// length; errors of the library itself; [`Error::Interrupted`].
+/// Bad input, before anything runs: what `Plan::new` refuses, rigid bodies, methods that know no neighbors; errors of the library itself; [`Error::Interrupted`].
 pub fn follow(
     scene: &Scene,
     request: &Request,
-    toward: &[[[f64; 3]; 2]],
+    toward: &Toward<'_>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Grown>> {
     if scene.rigid.is_some() {
         let message = "expected none: neighbors of rigid bodies are not followed; a Lagrangian has exponents";
         return Err(Error::invalid("rigid_bodies", message));
-    }
-    if toward.len() != scene.particles || toward.iter().flatten().flatten().all(|&x| x == 0.0) {
-        return Err(Error::Internal("neighbors begin in no direction".to_owned()));
     }
     let begun = Begun::planned(scene, request, true, ticker)?;
     let method = begun.plan.method;
@@ -49,8 +45,11 @@ pub fn follow(
     let ended = Grown { growth: Vec::new(), ending: Ending::Interrupted };
     let mut grown = vec![ended; scene.copies];
     for part in begun.parts(scene) {
+        let sizes: Vec<[f64; 2]> =
+            (0..part.scene.copies).map(|copy| toward.sizes[part.member(copy)]).collect();
+        let toward = Toward { sizes: &sizes, ..*toward };
         let writer = columns.writer(part.scene, part.members, 1);
-        for followed in neighbors::run(&part.job(request, &writer), toward, ticker)? {
+        for followed in neighbors::run(&part.job(request, &writer), &toward, ticker)? {
             let neighbors::Followed { copy, growth, ending } = followed;
             grown[part.member(copy)] = Grown { growth, ending };
         }

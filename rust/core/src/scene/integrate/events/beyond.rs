@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::numerics::power_of_two::{power_of_two, scale};
 use crate::parallel::Ticker;
 use crate::scene::events::{Moving, Sight, What};
+use crate::scene::frame::Moved;
 use crate::scene::unit::Prepared;
 
 /// How often the way beyond a zero is doubled, from a last digit on, until the function has its other sign.
@@ -58,31 +59,43 @@ impl Search<'_, '_> {
 }
 
 impl Search<'_, '_> {
-    /// A zero at the end of the run, to which the function comes from one side for all that the numbers of the state tell: what
+    /// A zero at the end of the run, to which the function comes from one side for all that is known of the state: what
     /// goes on from there takes it for its start, at which nothing comes to zero.
-    pub(super) fn arrival(&self, ticker: &mut Ticker<'_>) -> Result<Option<Zero>> {
+    pub(super) fn arrival(&self) -> Option<Zero> {
         let (watch, [start, end]) = (&*self.watch, self.ends);
         let job = watch.job;
         let last = scale(job.scene.elapsed(job.end()), -job.plan.units.time);
         let is_last = (self.span.to - last).abs() <= LAST_DIGITS * last.abs();
-        let comes_near = start * end > 0.0 && end.abs() < start.abs();
-        if !is_last || !comes_near || self.event >= watch.events.len() || watch.is_kept(self.event) {
-            return Ok(None);
+        let comes_near = start * end > 0.0 && end.abs() <= 0.5 * start.abs();
+        if !is_last || !comes_near || self.event >= watch.events.len() {
+            return None;
         }
+        let (event, places) = watch.event(self.event);
+        if !event.has_rates() {
+            return None;
+        }
+        // As a run that goes on sees it.
         let moved = self.unit.origin.at(scale(self.span.to, job.plan.units.time));
-        let told = |body: usize| {
-            let place = watch.bodies.indices.iter().position(|other| *other == body);
-            let bodies = place.map_or_else(Moving::default, |place| watch.after[place]);
-            [
-                core::array::from_fn(|c| moved.position[c].0 + bodies.position[c]),
-                core::array::from_fn(|c| moved.velocity[c].0 + bodies.velocity[c]),
-            ]
+        let told = |body: &Moving| Moving {
+            position: rounded(moved.position, (body.position, body.position_rest)),
+            velocity: rounded(moved.velocity, (body.velocity, body.velocity_rest)),
+            ..Moving::default()
         };
-        let seen = (&watch.next[self.event], &watch.after[..], self.span.to);
-        let rounding = watch.rounding_as_told(self.unit, self.event, seen, &told, ticker)?;
-        let arrives = end.abs() <= rounding && start.abs() > rounding && self.counts(start);
-        Ok(arrives.then_some((1.0, start < 0.0)))
+        let bodies: Vec<Moving> = watch.after.iter().map(told).collect();
+        let sight = event.sight_of(&bodies, places, &Moved::NOWHERE);
+        let far = places.iter().map(|&place| [bodies[place].position, bodies[place].velocity]);
+        let rounding = event.rounding_as_told(&sight, far.fold([0.0; 2], farther));
+        // What comes so near to its zero at the start has been there, too.
+        let nothing = rounding.max(event.least_swing(&sight, &watch.known).unwrap_or(0.0));
+        let is_there = sight.value.abs() <= nothing || sight.value * start < 0.0;
+        let arrives = is_there && start.abs() > nothing && self.counts(start);
+        arrives.then_some((1.0, start < 0.0))
     }
+}
+
+/// What numbers about an origin are as they are told.
+fn rounded(origin: [(f64, f64); 3], (numbers, rests): ([f64; 3], [f64; 3])) -> [f64; 3] {
+    core::array::from_fn(|c| origin[c].0 + (numbers[c] + (origin[c].1 + rests[c])))
 }
 
 impl Watch<'_> {

@@ -9,8 +9,8 @@ const CLEARANCE: f64 = 0.5;
 /// How far the rates may be off, as a part of that range in the time of a step.
 const SLANT: f64 = 0.125;
 
-/// What ends nearer to zero than this part of that range may be zero for all that a state tells.
-const ENDS: f64 = 1.0 / 1_048_576.0;
+/// What ends nearer to zero than this part of that range may be zero for all that is known of the state.
+const ENDS: f64 = 1.0 / 256.0;
 
 /// How often a step is halved, and its halves, to see whether the function keeps clear on all of them.
 const HALVINGS: usize = 4;

@@ -64,7 +64,7 @@ impl Search<'_, '_> {
     pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<Zero>> {
         let mut zeros = self.all_zeros(step, ticker)?;
         if zeros.last().is_none_or(|&(theta, _)| theta < 1.0 - ONE_ZERO) {
-            zeros.extend(self.arrival(ticker)?);
+            zeros.extend(self.arrival());
         }
         zeros.retain(|&(theta, _)| self.is_of_the_motion(theta));
         // Spheres that touch do not come to that once more; what the motion keeps is rounding everywhere.

@@ -21,12 +21,21 @@ use std::sync::Arc;
 const APART: f64 = 1.0 / 4096.0;
 /// The weights of the difference over one such length, and over two.
 const WEIGHTS: [(f64, f64); 2] = [(1.0, 8.0 / 12.0), (2.0, -1.0 / 12.0)];
-/// That length is shorter where accelerations are larger than at the start, as those of a body that falls, but not by more, and
-/// longer where they are smaller if nothing acts but what falls as 1/r².
+/// That length is the size of a unit, shorter where accelerations are larger than is usual for it, as those of a body that falls,
+/// but not by more, and longer where they are smaller if nothing acts but what falls as 1/r².
 const LEAST: f64 = 1e-4;
 const MOST: f64 = 1e4;
 /// They are apart by this part of the state at least, wherever that has gone: so much of it rounding leaves alone.
 const OF_STATE: f64 = 1.0 / 1_073_741_824.0;
+
+/// The size of places and velocities of a unit, by which differences of them are measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    pub(super) place: f64,
+    pub(super) velocity: f64,
+    /// Whether they are those of the whole motion, and not of its start.
+    pub(super) of_motion: bool,
+}
 
 /// Units beside small differences of them. States hold coordinates of the motion, then as many of the difference; velocities
 /// likewise.
@@ -38,8 +47,8 @@ pub(super) struct Variation {
     together: bool,
     /// 1 in the places of bodies, and 0 where there are none.
     bodies: Vec<Lanes>,
-    /// How large accelerations are where it begins.
-    at_first: Option<Lanes>,
+    /// How large accelerations are usually; if that is not known, as they are where it begins.
+    usual: Option<Lanes>,
     /// By what factor forces may change more slowly than there.
     slowest: f64,
     /// What the time was when it began to be counted.
@@ -52,17 +61,20 @@ pub(super) struct Variation {
 
 impl Variation {
     /// Of units in the lanes.
-    pub(super) fn new(plan: &Plan, units: &[Prepared], threads: usize) -> Self {
+    pub(super) fn new(plan: &Plan, units: &[Prepared], sizes: &[Size], threads: usize) -> Self {
         let views: Vec<&Prepared> = units.iter().collect();
         let (dynamics, layout) = (dynamics(plan, &views, threads), plan.layout);
         let falls =
             |force: &Arc<dyn ForceTerm>| force.as_newtonian().is_some_and(|(_, softening)| softening == 0.0);
         let mut measures = [Lanes::one(); 2];
-        for (lane, unit) in units.iter().enumerate() {
+        let mut usual = Some(Lanes::one());
+        for (lane, size) in sizes.iter().enumerate() {
             let lanes = layout.mask(lane);
-            for (measure, size) in measures.iter_mut().zip([unit.size.0, unit.size.1]) {
+            for (measure, size) in measures.iter_mut().zip([size.place, size.velocity]) {
                 *measure = Lanes::select(lanes, Lanes::splat(1.0 / size), *measure);
             }
+            let own = size.of_motion.then(|| size.velocity * size.velocity / size.place);
+            usual = usual.zip(own).map(|(all, own)| Lanes::select(lanes, Lanes::splat(own), all));
         }
         let room = vec![Lanes::zero(); dynamics.shape.len()];
         let mut bodies = room.clone();
@@ -76,13 +88,18 @@ impl Variation {
             measures,
             together: layout == Layout::Packed,
             bodies,
-            at_first: None,
+            usual,
             slowest: if plan.forces.iter().all(falls) { MOST } else { 1.0 },
             begun: 0.0,
             places: room.clone(),
             velocities: room.clone(),
             accelerations: room,
         }
+    }
+
+    /// The sizes of a place and of a velocity.
+    pub(super) fn sizes(&self) -> [Lanes; 2] {
+        self.measures.map(|measure| Lanes::one() / measure)
     }
 
     /// Numbers of a place, and of its difference.
@@ -107,10 +124,10 @@ impl Variation {
     /// Over what part of the size of a unit forces change, where accelerations are these.
     fn reach(&mut self, a: &[Lanes]) -> Lanes {
         let large = self.root(Lanes::pass(Square { of: a, measure: &Lanes::one() }));
-        let at_first = *self.at_first.get_or_insert(large);
+        let usual = *self.usual.get_or_insert(large);
         // Of what falls as 1/r², r. Where nothing acts at the start that tells nothing.
-        let reach = (at_first / large).sqrt().max(Lanes::splat(LEAST)).min(Lanes::splat(self.slowest));
-        let known = Lanes::zero().less(at_first).and(Lanes::zero().less(large));
+        let reach = (usual / large).sqrt().max(Lanes::splat(LEAST)).min(Lanes::splat(self.slowest));
+        let known = Lanes::zero().less(usual).and(Lanes::zero().less(large));
         Lanes::select(known, reach, Lanes::one())
     }
 }
