@@ -22,13 +22,13 @@ from visviva.request import RunRequest
 from visviva.status import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from visviva.ensemble import EnsembleScene
-    from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.request import MegnoRequest
     from visviva.scene import Scene
-    from visviva.trajectory import Trajectory
 
 __all__ = ["Megno"]
 
@@ -93,80 +93,75 @@ def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
     """Follow each copy and a neighbor to times."""
     from visviva.ensemble import EnsembleScene
 
-    alone = not isinstance(scene, EnsembleScene)
-    copies = scene.ensemble(position=scene.particles.position[None]) if alone else scene
-    begin = copies.scene.t0
-    seed = whole_number("seed", request.seed, 0)
+    if isinstance(scene, EnsembleScene):
+        return _megno(scene, request, scene.run)
+    copy = scene.ensemble(position=scene.particles.position[None])
+    found = _megno(copy, request, scene.run)
+    kinds = (found.mean_megno, found.megno, found.lyapunov_exponent, found.status)
+    return Megno(found.t, *(np.asarray(each)[0] for each in kinds))
+
+
+def _megno(copies: EnsembleScene, request: MegnoRequest, run: Callable[..., Any]) -> Megno:
+    """Of copies, or of one scene that is run by itself, which then tells by an error what is wrong with its motion."""
+    begin, bodies = copies.scene.t0, len(copies.scene.particles)
+    toward = np.random.default_rng(whole_number("seed", request.seed, 0)).normal(size=(bodies, 2, 3))
     threads = None if request.threads is None else whole_number("threads", request.threads)
     how: dict[str, Any] = {"method": request.method, "dt": request.dt, "rtol": request.rtol, "threads": threads}
     asked = RunRequest(t=request.t, **how).to_core(copies._keywords, copies._names)
-    times: Any = asked["times"]
+    times: NDArray[np.float64] = asked["times"]
     if not times.size or times[-1] == begin:
         raise InvalidInput("t", f"expected another time than the start, {begin:g}")
     _core.plan(asked)  # refuses times in another order
     instants = _instants(begin, times, asked["dt"])
-    toward = np.random.default_rng(seed).normal(size=(len(copies.scene.particles), 2, 3))
-    followed = {**asked, "end_only": False}
 
-    def grown(instants: NDArray[np.float64], sizes: NDArray[np.float64]) -> tuple[NDArray[np.float64], Any]:
-        return _core.neighbors(cast("_core._Request", followed | {"times": instants}), toward, sizes, threads=threads)
+    def grown(at: NDArray[np.float64], sizes: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int8]]:
+        followed = cast("_core._Request", {**asked, "end_only": False, "times": at})
+        return _core.neighbors(followed, toward, sizes, threads=threads)
 
     # Nobody goes anywhere from the start to the start, but what cannot be followed is refused.
     grown(np.array([begin]), np.ones((len(copies), 2)))
-    # Whatever is wrong with the motion itself, its run says.
-    motion = scene.run(t=[begin, *instants[:: len(instants) // _LOOKS + 1], times[-1]], **how)
-    logarithm, status = grown(instants, _sizes(scene, motion))
-    ended = motion.status
-    if alone and status[0] != Status.OK:
+    motion = run([begin, *instants[:: len(instants) // _LOOKS + 1], times[-1]], **how)
+    logarithm, status = grown(instants, _sizes(copies, motion))
+    if np.ndim(motion.status) == 0 and status[0] != Status.OK:
         raise ConvergenceError("the step of a neighbor fell to zero", float(instants[np.isfinite(logarithm[0])][-1]))
-    reached = np.append(begin, instants)
+    span = np.abs(np.append(begin, instants) - begin)
     logarithm = np.append(np.zeros((len(copies), 1)), logarithm, axis=1)
-    status = np.where(np.asarray(ended) == Status.OK, status, ended).astype(np.int8)
-    span = np.abs(reached - begin)
     megno = 2.0 * (logarithm - _averages(span, logarithm))
     exponents = np.divide(logarithm, span, out=np.zeros_like(logarithm), where=span > 0.0)
-    every: dict[str, Any] = {"mean_megno": _averages(span, megno), "megno": megno, "lyapunov_exponent": exponents}
     rows: Any = np.searchsorted(span, np.abs(times - begin))
+    told: Any = times
     if asked["end_only"]:
-        times, rows = float(times[-1]), rows[-1]
-    every = {name: values[:, rows] for name, values in every.items()} | {"status": status}
-    return Megno(times, **{name: values[0] for name, values in every.items()} if alone else every)
+        told, rows = float(times[-1]), rows[-1]
+    ended = np.where(np.asarray(motion.status) == Status.OK, status, motion.status).astype(np.int8)
+    return Megno(told, _averages(span, megno)[:, rows], megno[:, rows], exponents[:, rows], ended)
 
 
-def _sizes(scene: Scene | EnsembleScene, motion: Trajectory | EnsembleTrajectory) -> NDArray[np.float64]:
+def _sizes(copies: EnsembleScene, motion: Any) -> NDArray[np.float64]:
     """Over which length a motion bends, and how fast it is, of each copy (B, 2); zeros where bodies act on each other.
 
     Of what bends, v²/a, as the radius of a circle; of what does not, how far it goes about its middle.
     """
-    from visviva.trajectory import Trajectory
-
-    copies = [scene] if isinstance(motion, Trajectory) else list(scene)  # type: ignore[arg-type]
     found = np.zeros((len(copies), 2))
-    if any(_core.acts_between(force) for force in copies[0]._keywords["forces"]):
+    if any(_core.acts_between(force._to_core()) for force in copies.forces[0]):
         return found
     shape = (len(copies), len(motion.t), -1, 3)
     position, velocity = motion.position.reshape(shape), motion.velocity.reshape(shape)
-    for copy, own in enumerate(copies):
+    for copy, scene in enumerate(copies):
         rows = np.flatnonzero(np.isfinite(position[copy]).all(axis=(1, 2)))
-        x, v = position[copy][rows], velocity[copy][rows]
+        x, v, t = position[copy][rows], velocity[copy][rows], motion.t[rows]
         extent, speed = (float(np.sqrt(np.square(each - each.mean(axis=(0, 1))).sum(axis=2).mean())) for each in (x, v))
         some = np.unique(np.linspace(0, len(rows) - 1, _ACCELERATIONS).astype(int))
-        bent = np.mean(
-            [
-                np.square(own._like(_at(own, x[k], v[k]), own.forces, float(motion.t[rows[k]])).acceleration())
-                .sum(axis=1)
-                .mean()
-                for k in some
-            ]
-        )
-        radius = speed * speed / float(np.sqrt(bent)) if bent > 0.0 else np.inf
-        found[copy] = min(extent, radius), speed
+        bent = np.sqrt(np.mean([np.square(_acceleration(scene, x[k], v[k], t[k])).sum(axis=1).mean() for k in some]))
+        found[copy] = min(extent, speed * speed / bent if bent > 0.0 else np.inf), speed
     return found
 
 
-def _at(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Particles:
+def _acceleration(
+    scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64], t: np.float64
+) -> NDArray[np.float64]:
     bodies = scene.particles
-    return Particles(bodies.mass, position, velocity, bodies.names, bodies.radius)
+    there = Particles(bodies.mass, position, velocity, bodies.names, bodies.radius)
+    return scene._like(there, scene.forces, float(t)).acceleration()
 
 
 def _instants(begin: float, asked: NDArray[np.float64], dt: float | None) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ Their arguments are the fields of the request (`visviva.request`).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, cast
 
 from visviva import _core
 from visviva._html import Shown
@@ -15,7 +15,9 @@ from visviva.plan import Plan
 from visviva.request import MegnoRequest, PlanRequest, RunRequest, asked_by, execute
 
 if TYPE_CHECKING:
+    from visviva.ensemble import EnsembleScene
     from visviva.megno import Megno
+    from visviva.scene import Scene
 
 __all__ = ["Runnable"]
 
@@ -262,7 +264,7 @@ class Runnable(Shown, ABC, Generic[_Result]):
         """
         from visviva.megno import megno_of
 
-        return megno_of(self, request)
+        return megno_of(cast("Scene | EnsembleScene", self), request)
 
 
 def __dir__() -> list[str]:

@@ -57,6 +57,8 @@ _ELSEWHERE = {
     "orbits": "it is elements(about=…)",
     "energy": "it is invariants().energy",
     "angular_momentum": "it is invariants().angular_momentum",
+    "lyapunov_exponents": "the largest is megno(t=…).lyapunov_exponent; a Lagrangian has all",
+    "init_megno": "it is megno(t=…)",
     "t": "it is t0; run(t=…) takes the end",
     "dt": "it is an argument of run",
     "position": "it is particles.position",

@@ -59,7 +59,7 @@ def test_planes_at_the_seam_of_two_runs(how: dict[str, object]) -> None:
     """A free body comes to a plane where one run ends, but for rounding: exactly one of both tells it."""
     for seed in range(100):
         x, v = np.random.default_rng(seed).normal(size=(2, 3))
-        scene = vv.Scene(vv.Particles([1.0], [x], [v]), vv.LinearDrag(tau=1e30))
+        scene = vv.Scene(vv.Particles([1.0], [x], [v]), vv.Harmonic(k=1e-30))
         events = [vv.events.plane(x + 0.1 * v, v)]
         first = scene.run(t=0.1, events=events, **how)  # type: ignore[arg-type]
         second = first.final.run(t=0.35, events=events, **how)  # type: ignore[arg-type]

@@ -211,6 +211,27 @@ def test_methods_that_know_no_neighbors(method: str) -> None:
         KEPLER.megno(t=10.0, method=method, dt=None if method == "taylor" else 0.01)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("x", [0.0, 6e-17, 1e-9, 1e-3])
+def test_starts_next_to_the_origin_are_starts_like_any(x: float) -> None:
+    """A pendulum and a regular motion of Hénon and Heiles from the bottom: what is small at the start is no size."""
+    bottom = vv.ExpressionForce(potential=lambda r, v, t: 0.5 * (r[1] ** 2 + r[2] ** 2) - np.cos(r[0]))
+    swinging = vv.Scene(vv.Particles([1.0], [[x, 0, 0]], [[0.5, 0, 0]]), bottom)
+    assert swinging.megno(t=3e4).mean_megno == pytest.approx(1.9, rel=0.0, abs=0.1)
+    regular = vv.Scene(vv.Particles([1.0], [[x, 0, 0]], [[0.25, 0.2, 0.0]]), HENON_HEILES)
+    assert regular.megno(t=3000.0).mean_megno == pytest.approx(1.8, rel=0.0, abs=0.3)
+
+
+@pytest.mark.parametrize("t", [60.0, 1000.0])
+def test_where_a_motion_comes_to_rest_its_neighbors_tell_the_steps(t: float) -> None:
+    """At rest any step would do for the motion. A pendulum at its bottom, and one that comes to it: −Γ = −1/10."""
+    at_rest = vv.ExpressionForce(potential=lambda r, v, t: 0.5 * (r[1] ** 2 + r[2] ** 2) - np.cos(r[0] - 1.0))
+    still = vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]]), at_rest).megno(t=t)
+    assert abs(still.lyapunov_exponent) < 1.5 * np.log(t) / t
+    slowed = vv.ExpressionForce(acceleration=lambda r, v, t: [-np.sin(r[0]) - 0.2 * v[0], *(-r[1:] - 0.2 * v[1:])])
+    found = vv.Scene(vv.Particles([1.0], [[1.0, 0.3, 0]]), slowed).megno(t=t)
+    assert found.lyapunov_exponent == pytest.approx(-0.1, rel=0.0, abs=1.0 / t)
+
+
 def test_far_from_the_origin_as_near() -> None:
     """Places are counted from the center of mass. Of 1e6 sizes rounding leaves ten digits of the start."""
     p = KEPLER.particles

@@ -312,8 +312,9 @@ def of_matrices(
         roots = np.sqrt(-squares.astype(np.complex128))
         values = np.concatenate([roots, -roots])
     else:
-        free = (along(tangent, each) for each in (found.mass, found.damping, found.stiffness))
-        values, _ = eigenvalues(*free, along(None if tangent is None else np.abs(tangent), off_by))
+        mass, damping, stiffness = (along(tangent, each) for each in (found.mass, found.damping, found.stiffness))
+        unsure = along(None if tangent is None else np.abs(tangent), off_by)
+        values, _ = eigenvalues(mass, damping, stiffness, unsure)
     if not np.isfinite(values).all():
         raise InvalidInput("at", "eigenvalues of small motions leave the range of numbers; take other units")
     return Linearization(

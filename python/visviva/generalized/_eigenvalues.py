@@ -130,8 +130,8 @@ def _led(
         slope = 2.0 * at * mass + damping
         try:
             with np.errstate(all="ignore"):
-                step = 1.0 / np.trace(np.linalg.solve((at * mass + damping) * at + stiffness, slope))
-        except (np.linalg.LinAlgError, ZeroDivisionError):
+                step = complex(1.0 / np.trace(np.linalg.solve((at * mass + damping) * at + stiffness, slope)))
+        except np.linalg.LinAlgError:
             return value
         if not np.isfinite(step) or abs(value - step - start) > _MOVES * abs(start):
             break

@@ -15,7 +15,7 @@ use input::{Array, Asked, forces as described, point, points, snapshot};
 pub(crate) use output::Planned;
 use output::{error_dict, output_dict, plan_dict, status};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyList, PyTuple};
 use rigid::{Described, Turning};
 use visviva_core::Error;
 use visviva_core::conservation::PreciseBodies;
@@ -75,7 +75,7 @@ pub(crate) fn neighbors<'py>(
     toward: Array<'py>,
     sizes: Array<'py>,
     threads: Option<i64>,
-) -> PyResult<(Bound<'py, numpy::PyArrayDyn<f64>>, Bound<'py, numpy::PyArrayDyn<i8>>)> {
+) -> PyResult<Bound<'py, PyTuple>> {
     let (scene, request, _) = asked.prepared(threads)?;
     let (toward, _) = copied("toward", &toward, [Some(scene.particles), Some(2), Some(3)])?;
     let (sizes, _) = copied("sizes", &sizes, [Some(scene.copies), Some(2)])?;
@@ -85,7 +85,7 @@ pub(crate) fn neighbors<'py>(
     let status = grown.iter().map(|copy| status(&copy.ending)).collect();
     let shape = [grown.len(), request.times.len()];
     let growth = grown.into_iter().flat_map(|copy| copy.growth).collect();
-    Ok((moved(py, growth, &shape)?, moved(py, status, &shape[..1])?))
+    (moved(py, growth, &shape)?, moved(py, status, &shape[..1])?).into_pyobject(py)
 }
 
 /// Conserved quantities of recorded states.

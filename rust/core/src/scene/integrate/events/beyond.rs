@@ -59,6 +59,21 @@ impl Search<'_, '_> {
 }
 
 impl Search<'_, '_> {
+    /// Whether what is looked at is where it is to rounding, and would be at the end of the run: what rests on a plane does not
+    /// pass it.
+    pub(super) fn rests(&self) -> bool {
+        let what = &self.watch.event(self.event).0.what;
+        let by_place = matches!(what, What::Plane { .. } | What::Distance { .. });
+        let job = self.watch.job;
+        let run = scale(job.times.last().map_or(0.0, |end| end - job.scene.t0), job.plan.units.time);
+        let sights = [&self.watch.sights[self.event], &self.watch.next[self.event]];
+        let still = |(sight, value): (&Sight, f64)| {
+            let rounding = self.watch.event(self.event).0.rounding(sight);
+            value.abs() <= rounding && self.rate(sight).is_some_and(|rate| (rate * run).abs() <= rounding)
+        };
+        by_place && sights.into_iter().zip(self.ends).all(still)
+    }
+
     /// A zero at the end of the run, to which the function comes from one side for all that is known of the state: what
     /// goes on from there takes it for its start, at which nothing comes to zero.
     pub(super) fn arrival(&self) -> Option<Zero> {

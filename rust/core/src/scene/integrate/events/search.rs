@@ -206,21 +206,6 @@ impl Search<'_, '_> {
         Ok(zeros)
     }
 
-    /// Whether what is looked at is where it is to rounding, and would be at the end of the run: what rests on a plane does not
-    /// pass it.
-    fn rests(&self) -> bool {
-        let what = &self.watch.event(self.event).0.what;
-        let by_place = matches!(what, What::Plane { .. } | What::Distance { .. });
-        let job = self.watch.job;
-        let run = scale(job.times.last().map_or(0.0, |end| end - job.scene.t0), job.plan.units.time);
-        let sights = [&self.watch.sights[self.event], &self.watch.next[self.event]];
-        let still = |(sight, value): (&Sight, f64)| {
-            let rounding = self.watch.event(self.event).0.rounding(sight);
-            value.abs() <= rounding && self.rate(sight).is_some_and(|rate| (rate * run).abs() <= rounding)
-        };
-        by_place && sights.into_iter().zip(self.ends).all(still)
-    }
-
     /// Where the step is sampled.
     fn samples(&self) -> Vec<f64> {
         let job = self.watch.job;
