@@ -51,14 +51,13 @@ class Megno(Shown):
     Attributes
     ----------
     t : ndarray, shape (T,), or float
-        The times, or the end, that was asked for; all others have this shape, behind an axis over the copies of an
-        ensemble.
-    mean_megno : ndarray or float
+        The times, or the end, that was asked for.
+    mean_megno : ndarray, shape (B, T), (T,) or (B,), or float
         ⟨Y⟩, the average of Y over the time: it tends to 2 for a regular motion, to 0 for one whose neighbors stay where
         they are (an isochronous one), and grows as λt/2 for a chaotic one.
-    megno : ndarray or float
+    megno : ndarray, shape (B, T), (T,) or (B,), or float
         Y = (2/t) ∫ (δ̇/δ) t' dt', of the distance δ of a neighbor: ⟨Y⟩ before it is averaged.
-    lyapunov_exponent : ndarray or float
+    lyapunov_exponent : ndarray, shape (B, T), (T,) or (B,), or float
         λ = ln(δ(t)/δ(0)) / t: the largest Lyapunov exponent over this time.
     status : ndarray of int8, shape (B,), or int
         How each copy ended, values of `Status`; what comes after is NaN.
@@ -91,10 +90,15 @@ class Megno(Shown):
 
 def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
     """Follow each copy and a neighbor to times."""
+    from visviva._mergers import hosts
     from visviva.ensemble import EnsembleScene
 
     if isinstance(scene, EnsembleScene):
         return _megno(scene, request, scene.run)
+    parts = hosts(scene.particles)
+    if parts is not None:
+        # What has merged is where its host is, and nothing by itself.
+        scene = scene._like(scene.particles[np.unique(parts).tolist()], scene.forces, scene.t0)
     copy = scene.ensemble(position=scene.particles.position[None])
     found = _megno(copy, request, scene.run)
     kinds = (found.mean_megno, found.megno, found.lyapunov_exponent, found.status)

@@ -25,20 +25,6 @@ def test_functions_of_another_symbol_are_no_coordinates() -> None:
         vv.Lagrangian(x**2, [x])
 
 
-@pytest.mark.parametrize("rtol", [1e-12, 1e-3])
-def test_taylor_says_that_it_takes_no_absolute_values(rtol: float) -> None:
-    """Series end where one turns, whatever the tolerance."""
-    system = vv.Lagrangian(
-        lambda q, v, t: 0.5 * v[0] ** 2 - 0.5 * q[0] ** 2,
-        ["x"],
-        position=[1.0],
-        velocity=[1.0],
-        forces={"x": lambda q, v, t: -0.1 * abs(v[0]) * v[0]},
-    )
-    with pytest.raises(vv.InvalidInput, match="dop853"):
-        system.run(t=10.0, method="taylor", rtol=rtol)
-
-
 @pytest.mark.parametrize(("method", "dt"), [("stormer13", 0.1), ("stormer13", 0.2), ("yoshida4", 2.5)])
 def test_what_has_blown_up_is_told_wherever_it_ends(method: str, dt: float) -> None:
     """A pendulum that swings by a radian: its energy may come back to a tenth of what it went through."""

@@ -46,7 +46,13 @@ def test_no_method_of_ours_is_taken_for_anothers() -> None:
 
 @pytest.mark.parametrize(
     ("name", "cure"),
-    [("integrate", "run"), ("energy", "invariants().energy"), ("add", "new Scene"), ("plot", ".plot()"), ("megno", "")],
+    [
+        ("integrate", "run"),
+        ("energy", "invariants().energy"),
+        ("add", "new Scene"),
+        ("plot", ".plot()"),
+        ("init_megno", "megno(t=…)"),
+    ],
 )
 def test_a_scene_says_where_something_is(name: str, cure: str) -> None:
     with pytest.raises(AttributeError, match=rf"'Scene' object has no attribute '{name}'") as refused:

@@ -61,6 +61,7 @@ def things() -> dict[str, Any]:
     each = [
         bodies, scene, scene.plan(t=1.0), copies, copies.run(t=1.0), run, run.events, run.conservation(),
         run.elements(about="a"), scene.invariants(), handle, vv.Scene(handle).run(t=1.0), problem,
+        scene.megno(t=5.0), copies.megno(t=[1.0, 2.0]),
         vv.Scene(balls).run(t=4.0, collisions="bounce").collisions, pendulum, pendulum.hamiltonian(),
         pendulum.plan(t=1.0), pendulum.run(t=1.0), pendulums, pendulums.run(t=1.0), beam,
         pendulums.run(t=1.0, events=["theta"]).events,

@@ -239,6 +239,18 @@ def test_far_from_the_origin_as_near() -> None:
     assert far.megno(t=600.0).mean_megno == pytest.approx(KEPLER.megno(t=600.0).mean_megno, rel=0.0, abs=1e-4)
 
 
+def test_what_has_merged_is_one_body() -> None:
+    bodies = vv.Particles(
+        [1.0, 1e-3, 1e-3, 1e-3],
+        [[0, 0, 0], [1.0, 0, 0], [1.0, 0.01, 0], [0, 3.0, 0]],
+        [[0, 0, 0], [0, 1.0, 0], [0, 1.0, 0], [-0.57, 0, 0]],
+        radius=[1e-3, 8e-3, 8e-3, 1e-3],
+    )
+    left = vv.Scene(bodies, vv.Gravity(G=1.0)).run(t=1.0, collisions="merge").final
+    assert (left.particles.mass == 0.0).sum() == 1
+    assert left.megno(t=600.0).mean_megno == pytest.approx(2.0, rel=0.0, abs=0.2)
+
+
 def test_in_a_magnetic_field() -> None:
     """Velocities turn, and so do differences of them: places part for ever at no more than they started."""
     scene = vv.Scene(

@@ -125,12 +125,6 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
     kind = known[method]
     if kind.adaptive and dt is not None:
         raise InvalidInput("dt", f"{method} chooses its own steps; leave dt out")
-    if method == "taylor" and system._structure["kinks"]:
-        raise InvalidInput(
-            "method",
-            f"{method} follows series, which end where an absolute value turns; {ACROSS_KINKS} makes its steps small "
-            "there",
-        )
     if not kind.adaptive and dt is None:
         raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")
     _check_splitting(method, system)
