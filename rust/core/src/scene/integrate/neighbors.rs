@@ -3,11 +3,12 @@
 //! The one idea: the motion and the difference are one state, so that both take the same steps. Before the difference leaves the range of numbers it is set back to a length of about 1, and the logarithm of what
 //! it has grown is kept.
 
+mod choosing;
+mod equal;
 mod variation;
 
 use super::super::layout::Layout;
 use super::super::unit::{Prepared, Unit};
-use super::adaptive::measure;
 use super::fixed::lay;
 use super::report::Ending;
 use super::{Job, Result};
@@ -15,24 +16,13 @@ use crate::forces::term::Coupling;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::numerics::real::{Mask, Real};
-use crate::ode::fixed::place;
-use crate::ode::norm::{Block, Norm};
 use crate::ode::state::State;
-use crate::ode::step_control::Clock;
-use crate::ode::stepper::stepper;
-use crate::ode::system::Form;
-use crate::ode::trial::trial;
 use crate::parallel::{Ticker, for_chunks};
 use core::f64::consts::LN_2;
 use variation::{Size, Variation};
 
 /// Between which powers of two the length of a difference may be.
 const WIDEST: i32 = 128;
-/// What a step may be off in a difference, as a part of it: more than rounding of a derivative in a deep encounter.
-const OF_DIFFERENCES: f64 = 1e-5;
-/// Steps of a fixed length after which that is looked at.
-const STEPS: u64 = 16;
-
 /// What became of a unit and its neighbor.
 pub struct Followed {
     /// Which copy it is.
@@ -191,150 +181,5 @@ impl<'a> Group<'a> {
     fn end(&mut self, lane: usize, ending: Ending) {
         self.running = self.running.and(self.layout.mask(lane).not());
         self.followed[lane].ending = ending;
-    }
-
-    /// In steps that each unit chooses for itself.
-    fn choosing(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
-        let (job, plan) = (self.job, self.job.plan);
-        let outputs: Vec<f64> =
-            job.times.iter().map(|&t| scale(job.scene.elapsed(t), -plan.units.time)).collect();
-        let shape = self.units[0].state_shape(1);
-        let together = self.layout == Layout::Packed;
-        // The motion is held to what it is held to alone.
-        let mut norm = Norm::new(shape, Form::SecondOrder(shape.len()), Lanes::splat(job.rtol), together);
-        for (lane, unit) in self.units.iter().enumerate() {
-            measure::set(&mut norm, job, unit, self.layout.mask(lane));
-        }
-        // And the difference, less closely: where a motion rests it alone tells how long steps may be.
-        let half = self.variation.half();
-        let apart = norm.blocks.clone().into_iter().map(|block| Block {
-            start: half,
-            atol: vec![Lanes::zero()],
-            reference: [Lanes::zero(); 4],
-            drift: [Lanes::zero(); 4],
-            ..block
-        });
-        norm.blocks.extend(apart);
-        let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
-        let mut trial = trial(plan.method, &self.variation, &self.state, max_step)?;
-        let end = outputs.last().copied().unwrap_or(0.0);
-        let mut clock = Clock::new(Lanes::splat(end));
-        let mut between = self.state.clone();
-        let mut next = [0; WIDTH];
-        let start = self.length(&self.state);
-        for lane in 0..self.units.len() {
-            while next[lane] < outputs.len() && outputs[next[lane]] == 0.0 {
-                self.record(next[lane], &start, Bits(1 << lane));
-                next[lane] += 1;
-            }
-        }
-        if end == 0.0 {
-            return Ok(());
-        }
-        let allowed = Lanes::splat(OF_DIFFERENCES) * start;
-        for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
-            block.atol[0] = allowed * size;
-        }
-        trial.start(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
-        while self.running.any() {
-            ticker.tick()?;
-            let allowed = Lanes::splat(OF_DIFFERENCES) * self.length(&self.state);
-            for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
-                block.atol[0] = allowed * size;
-            }
-            let outcome =
-                trial.attempt(self.running, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
-            let mut ready = false;
-            // One output of each lane at a time.
-            loop {
-                let (mut due, mut theta) = (Bits(0), Lanes::one());
-                for lane in 0..self.units.len() {
-                    let (from, h) = (outcome.from.0[lane], outcome.h.0[lane]);
-                    let Some(&output) = outputs.get(next[lane]).filter(|_| outcome.accepted.lane(lane))
-                    else {
-                        continue;
-                    };
-                    let fraction = (output - from) / h;
-                    if fraction <= 1.0 || outcome.finished.lane(lane) {
-                        due = due.or(Bits(1 << lane));
-                        let inside = Lanes::splat(fraction.min(1.0));
-                        theta = Lanes::select(self.layout.mask(lane), inside, theta);
-                    }
-                }
-                if !due.any() {
-                    break;
-                }
-                if !ready {
-                    trial.dense(&outcome, &mut self.variation, &self.state, ticker)?;
-                    ready = true;
-                }
-                trial.at(&outcome, &mut self.variation, &self.state, theta, &mut between, ticker)?;
-                let length = self.length(&between);
-                for (lane, next) in next.iter_mut().enumerate().filter(|(lane, _)| due.lane(*lane)) {
-                    self.record(*next, &length, Bits(1 << lane));
-                    *next += 1;
-                }
-            }
-            trial.keep(outcome.accepted, &mut self.state);
-            let again = self.set_back().and(self.running);
-            if again.any() {
-                trial.start(again, &mut self.variation, &self.state, &mut clock, &norm, ticker)?;
-            }
-            for lane in 0..self.units.len() {
-                if !self.running.lane(lane) {
-                    continue;
-                }
-                if outcome.finished.lane(lane) {
-                    self.end(lane, Ending::Finished);
-                } else if outcome.stuck.lane(lane) {
-                    self.end(lane, Ending::NoStep);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// In equal steps, all side by side.
-    fn in_equal_steps(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
-        let (job, plan) = (self.job, self.job.plan);
-        let mut stepper = stepper(plan.method, job.step(), &self.variation, &self.state)?;
-        stepper.restart();
-        let dt = plan.dt.unwrap_or(plan.direction);
-        let (mut node, mut first) = (0, 0);
-        let mut between = self.state.clone();
-        for (output, &t) in job.times.iter().enumerate() {
-            let place = place(job.scene.elapsed(t), dt, Real::max(t.abs(), job.scene.t0.abs()));
-            while node < place.node {
-                ticker.tick()?;
-                let at_most = (place.node - node).min(STEPS);
-                node += stepper.step(node - first, at_most, &mut self.state, &mut self.variation, ticker)?;
-                stepper.settle(&mut self.state);
-                if self.set_back().any() {
-                    first = node;
-                    self.variation.begun = job.step() * node as f64;
-                    stepper.restart();
-                }
-            }
-            stepper.settle(&mut self.state);
-            let length = match place.past {
-                None => self.length(&self.state),
-                Some(past) => {
-                    between.copy_from(&self.state);
-                    let past = scale(past, -plan.units.time);
-                    stepper.between(node - first, past, &mut between, &mut self.variation, ticker)?;
-                    self.length(&between)
-                }
-            };
-            for lane in 0..self.units.len() {
-                if self.running.lane(lane) && !length.0[lane].is_finite() {
-                    self.end(lane, Ending::NotFinite);
-                }
-            }
-            self.record(output, &length, self.running);
-            if !self.running.any() {
-                break;
-            }
-        }
-        Ok(())
     }
 }
