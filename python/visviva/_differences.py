@@ -25,7 +25,9 @@ _NEAR = 2.0**-10
 _STEPS = 6
 """Steps that are tried, each an eighth of the one before: to 3e-8 of the size."""
 _DECADES = 30
-"""Where places have no size, steps from ten to the power of this down to minus this are tried."""
+"""Where places have no size, steps from ten to the power of minus this up to this are tried."""
+_AGREES, _WORSE = 1e-3, 10.0
+"""Until after steps whose derivatives agree to the first of these come some that agree so many times less."""
 ROUNDING = 1e-8
 """What such differences err by at most, of fields that bend over a thousandth of the size or more."""
 
@@ -72,22 +74,21 @@ def _at_the_origin(
     at: Callable[[NDArray[np.float64]], ArrayLike], x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The same where places have no size: over which length a field bends only it knows, be it 1e-30 or 1e30."""
-    best, least, before = np.zeros((len(x), 3, 3)), np.inf, None
+    best, least, before = np.zeros((len(x), 3, 3)), 1.0, None
     rounded, rounded_before = np.zeros(len(x)), np.zeros(len(x))
-    for shorter in range(-_DECADES, _DECADES + 1):
-        h = np.full((len(x), 1, 1), 10.0**-shorter)
+    for decade in range(-_DECADES, _DECADES + 1):
         try:
             with np.errstate(all="ignore"):
-                now, rounding = _by_differences(at, x, h)
+                now, rounding = _by_differences(at, x, np.full((len(x), 1, 1), 10.0**decade))
         except InvalidInput:  # so far away it is nowhere, or no number
-            before = None
-            continue
+            break
         if before is not None:
-            # Of what changes within a step, all differences are small: which agree is told beside their size.
-            unsure = float(rounding.max())
+            unsure = float(np.maximum(rounding, rounded_before).max())
             size = max(float(np.abs(now).max()), float(np.abs(before).max())) + unsure
-            change = (float(np.abs(now - before).max()) + unsure) / size if size > 0.0 else 0.0
+            change = (float(np.abs(now - before).max()) + unsure) / size if size > 0.0 else 1.0
+            if change > _WORSE * least and least < _AGREES:
+                break  # from here on it bends within a step, and farther off it may be another field
             if change < least:
-                best, least, rounded = before, change, rounded_before
+                best, least, rounded = now, change, rounding
         before, rounded_before = now, rounding
     return best, rounded

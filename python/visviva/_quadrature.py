@@ -49,7 +49,7 @@ def line_integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], 
         edges = np.concatenate([[0.0], (np.arange(panels - 1) + shift) / (panels - 1), [1.0]])
         s = edges[:-1, None] + np.diff(edges)[:, None] * (0.5 * (_NODES + 1.0))
         places = float_array("path", path(s.ravel()), (s.size, 3))
-        if not np.ptp(places, axis=0).any():
+        if panels >= _LOOKED_AT and not np.ptp(places, axis=0).any():
             return 0.0  # what stays where it is does no work
         forces = float_array("force", at(places), places.shape)
         # dr over half a piece, the unit of the nodes.

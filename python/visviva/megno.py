@@ -37,6 +37,8 @@ _INSTANTS = 2048
 _GOLDEN = 0.6180339887498949
 #: Instants by which the motion is measured.
 _LOOKS = 64
+#: Velocities that change by less than this part of themselves are those of a free body: it is measured by its start.
+_NO_CHANGE = 1e-12
 #: At so many of them accelerations are.
 _ACCELERATIONS = 8
 
@@ -127,7 +129,8 @@ def _megno(copies: EnsembleScene, request: MegnoRequest, run: Callable[..., Any]
     motion = run([begin, *instants[:: len(instants) // _LOOKS + 1], times[-1]], **how)
     logarithm, status = grown(instants, _sizes(copies, motion))
     if np.ndim(motion.status) == 0 and status[0] != Status.OK:
-        raise ConvergenceError("the step of a neighbor fell to zero", float(instants[np.isfinite(logarithm[0])][-1]))
+        last = float(np.append(begin, instants[np.isfinite(logarithm[0])])[-1])
+        raise ConvergenceError("the step of a neighbor fell to zero, or it left the range of numbers", last)
     span = np.abs(np.append(begin, instants) - begin)
     logarithm = np.append(np.zeros((len(copies), 1)), logarithm, axis=1)
     megno = 2.0 * (logarithm - _averages(span, logarithm))
@@ -154,6 +157,8 @@ def _sizes(copies: EnsembleScene, motion: Any) -> NDArray[np.float64]:
         rows = np.flatnonzero(np.isfinite(position[copy]).all(axis=(1, 2)))
         x, v, t = position[copy][rows], velocity[copy][rows], motion.t[rows]
         extent, speed = (float(np.sqrt(np.square(each - each.mean(axis=(0, 1))).sum(axis=2).mean())) for each in (x, v))
+        if speed <= _NO_CHANGE * float(np.abs(v).max()):
+            continue
         some = np.unique(np.linspace(0, len(rows) - 1, _ACCELERATIONS).astype(int))
         bent = np.sqrt(np.mean([np.square(_acceleration(scene, x[k], v[k], t[k])).sum(axis=1).mean() for k in some]))
         found[copy] = min(extent, speed * speed / bent if bent > 0.0 else np.inf), speed

@@ -212,9 +212,10 @@ class Runnable(Shown, ABC, Generic[_Result]):
     def megno(self, request: MegnoRequest) -> Megno:
         """Whether the motion is regular or chaotic: the mean exponential growth of nearby orbits (MEGNO).
 
-        A neighbor starts next to the scene, or next to each copy of an ensemble, in a random direction. How far it gets
-        is seen at some 2000 instants, more where much happens; it is set near again before it is far. All forces and
-        methods do. In an ensemble copies have the figures that they have alone, to about 1e-5.
+        A neighbor starts next to the scene, or next to each copy of an ensemble, in a random direction, and goes by the
+        linear equations of the motion beside it. How far it gets is seen at some 2000 instants. All forces do, and all
+        methods but ``taylor`` and those of Boris. In an ensemble copies have the figures that they have alone, but for
+        rounding, which close encounters amplify: there a smaller `rtol` tells regular from chaotic.
 
         Units: those of the scene.
 
@@ -226,7 +227,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         method, dt, rtol, threads : optional
             As of `run`.
         seed : int, optional
-            Of the direction, by NumPy's generator. Regular motions have 2 from every one, up to a few hundredths.
+            Of the direction, by NumPy's generator. Regular motions come to 2 from every one, after a hundred periods up
+            to some tenths.
 
         Returns
         -------

@@ -23,3 +23,11 @@ def test_angles_are_told_within_a_turn() -> None:
     for start in (0.5, 7.0, 100.0):
         places = [found.position[0] for found in vv.systems.pendulum(position=[start]).equilibria()]
         np.testing.assert_allclose(places, [-np.pi, 0.0, np.pi], rtol=1e-12, atol=1e-12)
+
+
+def test_a_spring_is_no_angle() -> None:
+    """Its stiffness is the same a turn farther, its force is not."""
+    spring = vv.Lagrangian(lambda q, v, t: 0.5 * v[0] ** 2 - 20.0 * (q[0] - 5.0) ** 2, ["x"], position=[5.5])
+    for each in (spring, spring.hamiltonian()):
+        (found,) = each.equilibria()
+        np.testing.assert_allclose(found.position, [5.0], rtol=1e-12, atol=0.0)

@@ -193,3 +193,14 @@ def test_spectra_of_one_size_are_those_of_whole_matrices(kind: str) -> None:
             nearest = min(range(len(exact)), key=lambda at: abs(exact[at] - value))
             # Next to a double eigenvalue both have half of their digits.
             assert abs(exact.pop(nearest) - value) < 1e-6 * max(1.0, abs(value))
+
+
+@pytest.mark.parametrize("growth", [-1e-5, 1e-5])
+def test_many_coordinates_are_judged_as_whole_matrices_tell(growth: float) -> None:
+    """Forty oscillators, one of which is pushed: LAPACK tells that from rounding of the largest."""
+    n = 40
+    damping = np.zeros((n, n))
+    damping[0, 0] = -2.0 * growth
+    damping[1, 2], damping[2, 1] = 0.1, -0.1
+    found, unsure = eigenvalues(np.eye(n), damping, np.diag(np.linspace(1.0, 4.0, n)), np.zeros((n, n)))
+    assert bool((found.real > 16.0 * unsure).any()) == (growth > 0.0)

@@ -281,3 +281,18 @@ def test_work_along_paths_that_stand_still() -> None:
     assert vv.audit.work(pull, [[1.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]) == pytest.approx(-1.5, rel=1e-14, abs=0.0)
     assert vv.audit.work(pull, [[1.0, 0, 0], [1.0, 0, 0]]) == 0.0
     assert vv.audit.work(pull, lambda s: np.ones((len(s), 3))) == 0.0
+
+
+@pytest.mark.parametrize("length", [1e-10, 1.0, 1e9])
+@pytest.mark.parametrize("spread", [0.0, 3.0])
+def test_the_curl_at_the_origin_of_what_dies_away(length: float, spread: float) -> None:
+    """(−y, x, 0) exp(−r²): far off it is 0, or what is linear beside it, which any step would do for."""
+
+    def dying(r: np.ndarray) -> np.ndarray:
+        x = r / length
+        turning = np.stack([-x[:, 1], x[:, 0], 0 * x[:, 2]], axis=-1) * np.exp(-(x * x).sum(axis=1))[:, None]
+        return turning + spread * x
+
+    found = vv.audit.curl(dying, [[0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(found.value * length, [[0.0, 0.0, 2.0]], rtol=1e-7, atol=1e-7)
+    assert not found.conservative

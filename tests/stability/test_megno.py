@@ -232,6 +232,15 @@ def test_where_a_motion_comes_to_rest_its_neighbors_tell_the_steps(t: float) -> 
     assert found.lyapunov_exponent == pytest.approx(-0.1, rel=0.0, abs=1.0 / t)
 
 
+def test_a_copy_at_rest_does_not_change_the_others() -> None:
+    """They share lanes; each is measured by its own motion."""
+    places = np.array([[[0.0, 0, 0]], [[0.0, 0.1, 0]]])
+    speeds = np.array([[[0.0, 0, 0]], [[0.25, 0.2, 0]]])
+    one = vv.Scene(vv.Particles([1.0], places[1], speeds[1]), HENON_HEILES)
+    both = one.ensemble(position=places, velocity=speeds).megno(t=1000.0)
+    assert both.mean_megno[1] == pytest.approx(one.megno(t=1000.0).mean_megno, rel=1e-6, abs=0.0)  # type: ignore[index]
+
+
 def test_far_from_the_origin_as_near() -> None:
     """Places are counted from the center of mass. Of 1e6 sizes rounding leaves ten digits of the start."""
     p = KEPLER.particles

@@ -26,6 +26,7 @@ _BY_RANK = 1e-6
 #: Of more coordinates than this, eigenvalues are those of methods for whole matrices, to this part of the largest.
 _MOST = 32
 _OF_THE_LARGEST = 1e-7
+_OF_ROUNDING = 1.0 / 16.0
 #: An eigenvalue moves by at most this part of itself, and no two come nearer to each other than that of what they were.
 _MOVES = 0.1
 #: Roundings of the entries of M, C and K.
@@ -44,8 +45,8 @@ def eigenvalues(
     """
     if len(mass) > _MOST:
         found = _of_first_order(mass, damping, stiffness)
-        least = np.full(len(found), _OF_THE_LARGEST * np.abs(found).max())
-        return np.where(np.abs(found) > least, found, 0.0), least
+        least = _OF_THE_LARGEST * np.abs(found).max()
+        return np.where(np.abs(found) > least, found, 0.0), np.full(len(found), _OF_ROUNDING * least)
     found = _of_matrices(mass, damping, stiffness)
     if not np.isfinite(found).all():
         return found, np.abs(found)

@@ -236,7 +236,7 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
 def _within(system: Lagrangian) -> NDArray[np.float64]:
     n = len(system.coordinates)
     start = np.zeros(n) if system.position is None else system._start()[:n]
-    return within(start, matrices_along(system, turned(start))[1])
+    return within(start, *matrices_along(system, turned(start)))
 
 
 def _leaves(system: Lagrangian, small: Linearization, sizes: Sizes) -> bool:

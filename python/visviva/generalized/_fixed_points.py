@@ -109,7 +109,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
         states[:, ~distinguishing] = 0.0
         place = _place_at_start(system)
         moved = np.concatenate([turned(place), np.zeros((n + 1, n))], axis=1)
-        states = states[(np.abs(states[:, :n]) <= within(place, rates_and_slopes(system, moved)[1])).all(axis=1)]
+        states = states[(np.abs(states[:, :n]) <= within(place, *rates_and_slopes(system, moved))).all(axis=1)]
     size = np.maximum(looked_at, np.abs(states).max(axis=0, initial=0.0))
     size[size == 0.0] = 1.0
     states = np.where(np.abs(states) < 1e-14 * size, 0.0, states)

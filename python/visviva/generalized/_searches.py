@@ -58,12 +58,12 @@ def turned(start: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.vstack([start, start + 2.0 * np.pi * np.eye(len(start))])
 
 
-def within(start: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+def within(start: NDArray[np.float64], forces: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     """How far off each coordinate may be (n,): angles a turn, others about as far as the system starts, too.
 
-    Which is which is told by the slopes of forces at the places of `turned`.
+    Which is which is told by forces and their slopes at the places of `turned`.
     """
-    rows = slopes.reshape(len(slopes), -1)
+    rows = np.concatenate([forces, 2.0 * np.pi * slopes.reshape(len(slopes), -1)], axis=1)
     with np.errstate(all="ignore"):
         is_angle = np.abs(rows[1:] - rows[0]).max(axis=1) <= _REPEATS * np.abs(rows[0]).max(initial=0.0)
     return np.where(is_angle, _A_TURN, np.fmax(_A_TURN, _AS_FAR * np.abs(start)))

@@ -47,8 +47,9 @@ pub(super) struct Variation {
     together: bool,
     /// 1 in the places of bodies, and 0 where there are none.
     bodies: Vec<Lanes>,
-    /// How large accelerations are usually; if that is not known, as they are where it begins.
-    usual: Option<Lanes>,
+    /// How large accelerations are usually; where that is not known, as they are where it begins.
+    usual: Lanes,
+    begins: bool,
     /// By what factor forces may change more slowly than there.
     slowest: f64,
     /// What the time was when it began to be counted.
@@ -67,14 +68,16 @@ impl Variation {
         let falls =
             |force: &Arc<dyn ForceTerm>| force.as_newtonian().is_some_and(|(_, softening)| softening == 0.0);
         let mut measures = [Lanes::one(); 2];
-        let mut usual = Some(Lanes::one());
+        let mut usual = Lanes::zero();
         for (lane, size) in sizes.iter().enumerate() {
             let lanes = layout.mask(lane);
             for (measure, size) in measures.iter_mut().zip([size.place, size.velocity]) {
                 *measure = Lanes::select(lanes, Lanes::splat(1.0 / size), *measure);
             }
-            let own = size.of_motion.then(|| size.velocity * size.velocity / size.place);
-            usual = usual.zip(own).map(|(all, own)| Lanes::select(lanes, Lanes::splat(own), all));
+            if size.of_motion {
+                let own = Lanes::splat(size.velocity * size.velocity / size.place);
+                usual = Lanes::select(lanes, own, usual);
+            }
         }
         let room = vec![Lanes::zero(); dynamics.shape.len()];
         let mut bodies = room.clone();
@@ -89,6 +92,7 @@ impl Variation {
             together: layout == Layout::Packed,
             bodies,
             usual,
+            begins: true,
             slowest: if plan.forces.iter().all(falls) { MOST } else { 1.0 },
             begun: 0.0,
             places: room.clone(),
@@ -124,7 +128,10 @@ impl Variation {
     /// Over what part of the size of a unit forces change, where accelerations are these.
     fn reach(&mut self, a: &[Lanes]) -> Lanes {
         let large = self.root(Lanes::pass(Square { of: a, measure: &Lanes::one() }));
-        let usual = *self.usual.get_or_insert(large);
+        if core::mem::take(&mut self.begins) {
+            self.usual = Lanes::select(Lanes::zero().less(self.usual), self.usual, large);
+        }
+        let usual = self.usual;
         // Of what falls as 1/r², r. Where nothing acts at the start that tells nothing.
         let reach = (usual / large).sqrt().max(Lanes::splat(LEAST)).min(Lanes::splat(self.slowest));
         let known = Lanes::zero().less(usual).and(Lanes::zero().less(large));
