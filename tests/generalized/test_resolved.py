@@ -205,3 +205,12 @@ def test_an_angle_that_has_few_digits_left_is_no_lack_of_steps(turns: float) -> 
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         vv.systems.pendulum(position=[turns], velocity=[8.0]).run(20.0)
+
+
+@pytest.mark.parametrize(("method", "dt"), [("stormer13", 0.1), ("stormer13", 0.2), ("yoshida4", 2.5)])
+def test_what_has_blown_up_is_told_wherever_it_ends(method: str, dt: float) -> None:
+    """A pendulum that swings by a radian: its energy may come back to a tenth of what it went through."""
+    swinging = vv.systems.pendulum(position=[1.0], g=4.0)
+    for t in np.linspace(60.0, 96.0, 7):
+        with pytest.warns(vv.AccuracyWarning, match="energy"):
+            swinging.run(t=float(t), method=method, dt=dt)  # type: ignore[arg-type]

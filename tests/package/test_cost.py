@@ -134,5 +134,5 @@ def test_steps_that_are_bounded_by_the_run_are_not_bounded_by_a_stretch_of_it(t:
     scene = vv.Scene(bodies, trap, vv.PairPotential(vv.potentials.Yukawa(k=0.1, length=1.0)))
     cost = scene.plan(t=t).cost()
     assert cost is not None
-    # What comes after the stretch may be another motion.
-    assert cost.steps == pytest.approx(scene.run(t=t).stats.steps, rel=1.0, abs=0.0)
+    # What comes after the stretch may be another motion: a factor of two.
+    assert 0.5 < cost.steps / scene.run(t=t).stats.steps < 2.0

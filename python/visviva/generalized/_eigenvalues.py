@@ -56,12 +56,9 @@ def eigenvalues(
             # The other one of a pair.
             partner = np.flatnonzero(found == value.conjugate())
             led[index] = led[partner[0]].conjugate() if partner.size else value
-    # Two that are led to one were two.
-    for index in range(len(led)):
-        others = np.arange(len(led)) != index
-        apart = np.abs(found - found[index])[others]
-        if (np.abs(led - led[index])[others] < _MOVES * apart).any():
-            led[index] = found[index]
+    # Two that are led to one were two: both stay where they were.
+    apart, left = (np.abs(each[:, None] - each) for each in (found, led))
+    led = np.where((left < _MOVES * apart).any(axis=1), found, led)
     unsure = np.array([_unsure(mass, damping, stiffness, rounding, value) for value in led])
     return np.where(np.abs(led) > unsure, led, 0.0), unsure
 

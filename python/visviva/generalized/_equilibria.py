@@ -24,6 +24,7 @@ from visviva.generalized._searches import (
     SAME,
     by_sizes,
     distinguishing_coordinates,
+    place_at_start,
     starts_of_a_search,
     turned,
     where_something_acts,
@@ -234,8 +235,7 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
 
 
 def _within(system: Lagrangian) -> NDArray[np.float64]:
-    n = len(system.coordinates)
-    start = np.zeros(n) if system.position is None else system._start()[:n]
+    start = place_at_start(system)
     return within(start, *matrices_along(system, turned(start)))
 
 

@@ -24,6 +24,7 @@ from visviva.generalized._searches import (
     SAME,
     by_sizes,
     distinguishing_coordinates,
+    place_at_start,
     starts_of_a_search,
     turned,
     where_something_acts,
@@ -67,13 +68,8 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
             )
         sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
         return by_sizes(system, states, sizes, lambda group: _found(system, group))
-    at_rest = _at_rest(system, np.concatenate([starts_of_a_search(n), _place_at_start(system)[None]]))
+    at_rest = _at_rest(system, np.concatenate([starts_of_a_search(n), place_at_start(system)[None]]))
     return _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), everywhere=True)
-
-
-def _place_at_start(system: Hamiltonian) -> NDArray[np.float64]:
-    n = len(system.coordinates)
-    return np.zeros(n) if system.position is None else system._start()[:n]
 
 
 def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -107,7 +103,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
             states = states[where_something_acts(lambda at: _forces(system, at), states, starts, n)]
         # All places along a cyclic coordinate are alike, and angles beyond a turn are the same.
         states[:, ~distinguishing] = 0.0
-        place = _place_at_start(system)
+        place = place_at_start(system)
         moved = np.concatenate([turned(place), np.zeros((n + 1, n))], axis=1)
         states = states[(np.abs(states[:, :n]) <= within(place, *rates_and_slopes(system, moved))).all(axis=1)]
     size = np.maximum(looked_at, np.abs(states).max(axis=0, initial=0.0))

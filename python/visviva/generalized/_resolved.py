@@ -105,7 +105,7 @@ def warn_if_unresolved(
         # A motion that begins at rest and comes back has no energies at its ends to be compared with.
         largest, change = _on_the_way(done, int(copy))
         size = max(sizes[copy], largest)
-        # What has blown up may come near to where it began.
+        # The end is told of where it is off, or nothing is; but what has blown up may come near to where it began.
         at_end = bool(changes[copy] > limit * size) or change <= limit * size
         error = float((changes[copy] if at_end else change) / size)
         if limit < error <= TOLERATED:
@@ -228,7 +228,8 @@ def _on_the_way(done: _Done, copy: int) -> tuple[float, float]:
     energies, sizes = _energies(system, outputs[: len(states)], states, np.tile(done.values[copy], (len(states), 1)))
     known = np.isfinite(sizes)
     changes = np.abs(energies - energies[:1])
-    return tuple(float(np.max(each, initial=0.0, where=known)) for each in (sizes, changes))  # type: ignore[return-value]
+    largest, change = (float(np.max(each, initial=0.0, where=known)) for each in (sizes, changes))
+    return largest, change
 
 
 def _energies(

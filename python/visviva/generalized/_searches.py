@@ -25,6 +25,7 @@ __all__ = [
     "SAME",
     "by_sizes",
     "distinguishing_coordinates",
+    "place_at_start",
     "starts_of_a_search",
     "turned",
     "where_something_acts",
@@ -51,6 +52,12 @@ _A_TURN = np.pi + 1e-6
 _REPEATS = 1e-9
 #: How far off equilibria are told of coordinates that are no angles, in units of where the system starts.
 _AS_FAR = 4.0
+
+
+def place_at_start(system: Lagrangian | Hamiltonian) -> NDArray[np.float64]:
+    """Give where a system starts (n,), zeros if nobody has told."""
+    n = len(system.coordinates)
+    return np.zeros(n) if system.position is None else system._start()[:n]
 
 
 def turned(start: NDArray[np.float64]) -> NDArray[np.float64]:

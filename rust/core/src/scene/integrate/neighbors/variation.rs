@@ -181,15 +181,12 @@ impl System<Lanes> for Variation {
         for (steps, weight) in WEIGHTS {
             for sign in [1.0, -1.0] {
                 let along = step * Lanes::splat(sign * steps);
-                Lanes::pass(Displace { from: q, along: apart, step: &along, to: &mut self.places });
-                Lanes::pass(Displace {
-                    from: v,
-                    along: parting,
-                    step: &along,
-                    to: &mut self.velocities[..v.len()],
-                });
-                let (q, v) = (&self.places, &self.velocities[..v.len()]);
-                self.dynamics.acceleration(&t, q, v, &mut self.accelerations, ticker)?;
+                let velocities = &mut self.velocities[..v.len()];
+                self.places.copy_from_slice(q);
+                velocities.copy_from_slice(v);
+                Lanes::pass(Accumulate { values: apart, weight: &along, to: &mut self.places });
+                Lanes::pass(Accumulate { values: parting, weight: &along, to: velocities });
+                self.dynamics.acceleration(&t, &self.places, velocities, &mut self.accelerations, ticker)?;
                 let weight = Lanes::splat(sign * weight) / step;
                 Lanes::pass(Accumulate { values: &self.accelerations, weight: &weight, to: change });
             }
@@ -220,28 +217,6 @@ impl<S: Element> Pass<S> for Square<'_, S> {
             sum = number.multiply_add(number, sum);
         }
         sum.store()
-    }
-}
-
-/// `to = from + step·along`.
-struct Displace<'a, S> {
-    from: &'a [S],
-    along: &'a [S],
-    step: &'a S,
-    to: &'a mut [S],
-}
-
-impl<S: Element> Pass<S> for Displace<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<S>>(self) {
-        let step = *V::view_one(self.step);
-        let to = V::view_mut(self.to);
-        let n = to.len();
-        let (from, along) = (&V::view(self.from)[..n], &V::view(self.along)[..n]);
-        for i in 0..n {
-            to[i] = step.multiply_add(along[i], from[i]);
-        }
     }
 }
 
