@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva import _core
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
+    from visviva.forces import Force
     from visviva.particles import Particles
     from visviva.scene import Scene
     from visviva.trajectory import Trajectory
 
-__all__ = ["by_era", "eras", "has_mergers", "hosts", "parts_and_masses"]
+__all__ = ["by_era", "eras", "has_mergers", "hosts", "parts_and_masses", "remaining"]
 
 
 def hosts(bodies: Particles) -> NDArray[np.int64] | None:
@@ -38,6 +41,24 @@ def hosts(bodies: Particles) -> NDArray[np.int64] | None:
     return found if (found != np.arange(len(bodies))).any() else None
 
 
+def remaining(scene: Scene, parts: NDArray[np.int64], mass: NDArray[np.float64] | None = None) -> Scene:
+    """The bodies that are parts of no others, and the forces on them; with these masses of all, if not their own."""
+    from visviva.particles import Particles
+
+    p, there = scene.particles, np.unique(parts)
+    particles = Particles((p.mass if mass is None else mass)[there], p.position[there], p.velocity[there])
+    forces = (_of_remaining(force, parts) for force in scene.forces)
+    return scene._like(particles, [force for force in forces if force is not None], scene.t0)
+
+
+def _of_remaining(force: Force, parts: NDArray[np.int64]) -> Force | None:
+    described = force._to_core()
+    changed = _core.force_of_remaining(described, parts)
+    if changed is None or changed is described:
+        return None if changed is None else force
+    return type(force)._from_core(changed)
+
+
 def has_mergers(run: Any) -> bool:
     """Whether bodies of a run have merged."""
     return bool((run._result.get("collisions", {"survivor": np.zeros(0)})["survivor"] >= 0).any())
@@ -45,33 +66,27 @@ def has_mergers(run: Any) -> bool:
 
 def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
     """Rows, the scene of the bodies that are there, and which of those of the run they are; None for all of them."""
-    from visviva.particles import Particles
-
     bodies = run.scene.particles
     parts = hosts(bodies) if run._result.get("collisions") else None
     if parts is None and not has_mergers(run):
         yield slice(0, len(run.t)), run.scene, None
         return
     table = run._result["collisions"]
-    mass, left = bodies.mass.copy(), np.ones(len(bodies), dtype=bool)
-    if parts is not None:
-        left = parts == np.arange(len(bodies))
+    mass, host = bodies.mass.copy(), np.arange(len(bodies)) if parts is None else parts
     # A row at the time of a merger is of before.
     ends = [*np.searchsorted(run.t, table["t"], side="right").tolist(), len(run.t)]
     start = 0
     for line, end in enumerate(ends):
         if end > start:
-            remaining = np.flatnonzero(left)
-            position, velocity = bodies.position[remaining], bodies.velocity[remaining]
-            particles = Particles(mass[remaining], position, velocity)
-            yield slice(start, end), run.scene._like(particles, run.scene.forces, run.scene.t0), remaining.tolist()
+            yield slice(start, end), remaining(run.scene, host, mass), np.unique(host).tolist()
             start = end
         if line < len(table["t"]) and table["survivor"][line] >= 0:
             first, second = int(table["first"][line]), int(table["second"][line])
             survivor = int(table["survivor"][line])
             gone = first + second - survivor
             mass[survivor] += mass[gone]
-            mass[gone], left[gone] = 0.0, False
+            mass[gone] = 0.0
+            host[host == gone] = survivor
 
 
 def parts_and_masses(run: Any) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:

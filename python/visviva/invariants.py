@@ -16,7 +16,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._mergers import hosts
+from visviva._mergers import hosts, remaining
 from visviva._text import short_repr, table
 from visviva._turning import kept_by_bodies
 from visviva.errors import InvalidInput
@@ -161,8 +161,8 @@ def invariants_of(scene: Scene, about: ArrayLike | str | None) -> Invariants:
     parts = hosts(p) if scene.rigid_bodies is None else None
     if parts is not None:
         # What is a part of another has no energy of its own.
-        p = p[np.unique(parts).tolist()]
-        scene = scene._like(p, scene.forces, scene.t0)
+        scene = remaining(scene, parts)
+        p = scene.particles
     total = fsum(p.mass)
     if not total > 0.0:
         raise InvalidInput("mass", "the total mass is zero, so there is nothing to conserve; give one body a mass")

@@ -92,7 +92,7 @@ class Megno(Shown):
 
 def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
     """Follow each copy and a neighbor to times."""
-    from visviva._mergers import hosts
+    from visviva._mergers import hosts, remaining
     from visviva.ensemble import EnsembleScene
 
     if isinstance(scene, EnsembleScene):
@@ -100,7 +100,7 @@ def megno_of(scene: Scene | EnsembleScene, request: MegnoRequest) -> Megno:
     parts = hosts(scene.particles)
     if parts is not None:
         # What has merged is where its host is, and nothing by itself.
-        scene = scene._like(scene.particles[np.unique(parts).tolist()], scene.forces, scene.t0)
+        scene = remaining(scene, parts)
     copy = scene.ensemble(position=scene.particles.position[None])
     found = _megno(copy, request, scene.run)
     kinds = (found.mean_megno, found.megno, found.lyapunov_exponent, found.status)

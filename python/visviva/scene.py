@@ -382,7 +382,7 @@ class Scene(Runnable[Trajectory], Framed):
         >>> vv.Scene(vv.Particles([8.0, 0.0], [[0, 0, 0], [2, 0, 0]]), vv.Gravity(G=1.0)).acceleration()[1]
         array([-2.,  0.,  0.])
         """
-        from visviva._mergers import hosts
+        from visviva._mergers import hosts, remaining
 
         if not self._turns_freely:
             raise InvalidInput("rigid_bodies", "accelerations are not available for rigid bodies under torques")
@@ -390,9 +390,8 @@ class Scene(Runnable[Trajectory], Framed):
         p = self.particles
         parts = hosts(p)
         if parts is not None:
-            whole = np.unique(parts)
-            place = np.searchsorted(whole, parts)
-            return self._like(p[whole.tolist()], self.forces, self.t0).acceleration()[place]
+            place = np.searchsorted(np.unique(parts), parts)
+            return remaining(self, parts).acceleration()[place]
         return _core.acceleration(
             mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity, t0=self.t0
         )

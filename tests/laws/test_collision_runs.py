@@ -227,9 +227,6 @@ def test_what_has_no_meaning_is_refused() -> None:
         (scene, {"collisions": 1}, "collisions: expected a name"),
         (overlap, {"collisions": "bounce"}, "bodies 0 and 1 overlap by 0.5 at the start"),
         (overlap, {"collisions": "stop"}, "bodies 0 and 1 overlap"),
-        (vv.Scene(bodies, vv.Spring(0, 1, 1.0)), {"collisions": "merge"}, "Spring names bodies"),
-        (vv.Scene(bodies, vv.Coulomb([1.0, 1.0], k=1.0)), {"collisions": "merge"}, "Coulomb names bodies"),
-        (vv.Scene(bodies, vv.UniformMagneticField((0, 0, 1))), {"collisions": "merge"}, "has charges"),
         (vv.Scene(bodies, vv.QuadraticDrag([1.0, 2.0])), {"collisions": "merge"}, "QuadraticDrag"),
     ):
         with pytest.raises(vv.InvalidInput, match=words):

@@ -66,7 +66,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::registry::{
-        acts_between, check_potential, dimensions, forces, methods, potential, potentials, screening_length,
+        acts_between, check_potential, dimensions, force_of_remaining, forces, methods, potential,
+        potentials, screening_length,
     };
     #[pymodule_export]
     use crate::rigid::{

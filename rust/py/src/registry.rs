@@ -3,12 +3,13 @@
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::compute;
-use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
+use numpy::{PyArray1, PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
+use visviva_core::forces::remaining::{OfRemaining, Remaining};
 use visviva_core::forces::term::Coupling;
 use visviva_core::memory::reserved;
 use visviva_core::numerics::double_double::DoubleDouble;
@@ -142,6 +143,37 @@ pub(crate) fn acts_between(description: &Bound<'_, PyDict>) -> PyResult<bool> {
     Ok(force(description)?.coupling() != Coupling::None)
 }
 
+/// What a force is of the bodies that remain when each is a part of a host, or by itself; nothing, if it acts no more.
+#[pyfunction]
+pub(crate) fn force_of_remaining<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    hosts: PyReadonlyArrayDyn<'py, i64>,
+) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let hosts = bodies_at("hosts", &hosts)?;
+    let force = force(description)?;
+    let values = match force.of_remaining(&Remaining::of(&hosts)) {
+        OfRemaining::Same | OfRemaining::Unknown => return Ok(Some(description.clone())),
+        OfRemaining::Nothing => return Ok(None),
+        OfRemaining::Values(values) => values,
+    };
+    let changed = description.copy()?;
+    for (parameter, value) in force.declaration().parameters.iter().zip(values) {
+        match value {
+            Value::Number(number) => changed.set_item(parameter.name, number)?,
+            Value::Numbers(numbers) => changed.set_item(parameter.name, PyArray1::from_vec(py, numbers))?,
+            Value::Vector(vector) => changed.set_item(parameter.name, PyArray1::from_slice(py, &vector))?,
+            Value::Indices(indices) => {
+                let indices = indices.into_iter().map(|index| index as i64).collect();
+                changed.set_item(parameter.name, PyArray1::from_vec(py, indices))?;
+            }
+            // None of these is about bodies.
+            Value::Potential(_) | Value::Word(_) | Value::Table(_) => {}
+        }
+    }
+    Ok(Some(changed))
+}
+
 /// The force of a description.
 ///
 /// # Errors
@@ -183,13 +215,7 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
     Ok(match parameter.kind {
         Kind::Number(_) => Value::Number(get(description, name)?),
         Kind::Numbers(_) => Value::Numbers(copied(name, &get::<Column<'_>>(description, name)?, [None])?.0),
-        Kind::Indices => {
-            let (indices, _) = copied(name, &get::<PyReadonlyArrayDyn<'_, i64>>(description, name)?, [None])?;
-            let index = |i: &i64| usize::try_from(*i);
-            let indices: Result<Vec<usize>, _> = indices.iter().map(index).collect();
-            let negative = |_| raised(py, Error::invalid(name, "expected indices of bodies, from 0 on"));
-            Value::Indices(indices.map_err(negative)?)
-        }
+        Kind::Indices => Value::Indices(bodies_at(name, &get(description, name)?)?),
         Kind::Vector | Kind::AxialVector | Kind::Direction | Kind::Point => {
             let (values, _) = copied(name, &get::<Column<'_>>(description, name)?, [Some(3)])?;
             let vector = <[f64; 3]>::try_from(&values[..]);
@@ -203,6 +229,14 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
             Value::Table(copied(name, &get::<Column<'_>>(description, name)?, [None])?.0.into())
         }
     })
+}
+
+/// Indices of bodies.
+fn bodies_at(name: &str, indices: &PyReadonlyArrayDyn<'_, i64>) -> PyResult<Vec<usize>> {
+    let (copy, _) = copied(name, indices, [None])?;
+    let all: Result<Vec<usize>, _> = copy.iter().map(|i| usize::try_from(*i)).collect();
+    let negative = |_| raised(indices.py(), Error::invalid(name, "expected indices of bodies, from 0 on"));
+    all.map_err(negative)
 }
 
 /// An entry of a description.

@@ -8,6 +8,7 @@ use super::context::{Context, System, of_body};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::{Turns, Weight};
 use super::gravity::{energy, newton, series};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -20,7 +21,7 @@ use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::ode::series::Jet;
 use crate::parallel::Ticker;
-use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::tiered;
 use crate::units::Units;
 use crate::words::numbers;
@@ -173,10 +174,11 @@ impl ForceTerm for Coulomb {
     fn names_bodies(&self) -> bool {
         self.charge.len() > 1
     }
-    fn tells_bodies_apart(&self) -> bool {
-        true
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let values =
+            |charges| vec![Value::Numbers(charges), Value::Number(self.k), Value::Number(self.softening)];
+        OfRemaining::values(remaining.sums(&self.charge).map(values))
     }
-
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING
     }

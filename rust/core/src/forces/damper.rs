@@ -6,6 +6,7 @@
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
+use super::remaining::{OfRemaining, Remaining};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -101,6 +102,14 @@ impl ForceTerm for Dampers {
     }
     fn coupling(&self) -> Coupling {
         Coupling::Listed(self.links.pairs().to_vec())
+    }
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let Some([i, j, links]) = remaining.links(self.links.pairs()) else { return OfRemaining::Unknown };
+        if links.is_empty() {
+            return OfRemaining::Nothing;
+        }
+        let coefficients = links.iter().map(|&at| self.coefficient[at]).collect();
+        OfRemaining::Values(vec![Value::Indices(i), Value::Indices(j), Value::Numbers(coefficients)])
     }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Everywhere, spin: true, energy: false }

@@ -27,6 +27,7 @@ pub mod oblate;
 pub mod pair_potential;
 pub mod post_newtonian;
 pub mod quadratic_drag;
+pub mod remaining;
 pub mod rotating_frame;
 pub mod series;
 mod sources;

@@ -5,6 +5,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
 use super::following::{Following, Leaders};
 use super::links::{check_counts, of_link};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
@@ -195,6 +196,26 @@ impl ForceTerm for Oblate {
     }
     fn names_bodies(&self) -> bool {
         true
+    }
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        if self.bodies.iter().any(|&body| body >= remaining.places.len()) {
+            return OfRemaining::Unknown;
+        }
+        let place = |(&body, &shape)| Some((remaining.place_if_there(body)?, shape));
+        let there: Vec<(usize, Shape)> = self.bodies.iter().zip(&self.shapes).filter_map(place).collect();
+        if there.is_empty() {
+            return OfRemaining::Nothing;
+        }
+        let number =
+            |of: fn(&Shape) -> f64| Value::Numbers(there.iter().map(|(_, shape)| of(shape)).collect());
+        OfRemaining::Values(vec![
+            Value::Indices(there.iter().map(|&(place, _)| place).collect()),
+            Value::Number(self.constant),
+            number(|shape| shape.j2),
+            number(|shape| shape.radius),
+            Value::Vector(self.axis),
+            number(|shape| shape.j4),
+        ])
     }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Nowhere, spin: false, energy: true }

@@ -5,6 +5,7 @@ use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::following::{Following, Leaders};
 use super::oblate::{CONSTANT, check_sources, sources_act};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
@@ -15,7 +16,7 @@ use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
-use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Value};
 use crate::units::Units;
 use std::sync::Arc;
 
@@ -108,6 +109,16 @@ impl ForceTerm for PostNewtonian {
     }
     fn names_bodies(&self) -> bool {
         true
+    }
+    /// The mass of a dominant body goes on to pull in that of which it is a part.
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let place = |&body: &usize| remaining.places.get(body).copied();
+        let Some(mut places) = self.bodies.iter().map(place).collect::<Option<Vec<usize>>>() else {
+            return OfRemaining::Unknown;
+        };
+        places.sort_unstable();
+        places.dedup();
+        OfRemaining::Values(vec![Value::Indices(places), Value::Number(self.constant), Value::Number(self.c)])
     }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Nowhere, spin: false, energy: false }

@@ -4,6 +4,7 @@ use super::bodies::PreciseBodies;
 use super::context::{Context, of_body};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::remaining::{OfRemaining, Remaining};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -72,10 +73,9 @@ impl ForceTerm for QuadraticDrag {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
     }
-    fn tells_bodies_apart(&self) -> bool {
-        self.coefficient.len() > 1
+    fn of_remaining(&self, _: &Remaining) -> OfRemaining {
+        if self.coefficient.len() > 1 { OfRemaining::Unknown } else { OfRemaining::Same }
     }
-
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         Box::new(self.slowing(context))
     }

@@ -6,6 +6,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
@@ -149,6 +150,16 @@ impl ForceTerm for Springs {
     }
     fn coupling(&self) -> Coupling {
         Coupling::Listed(self.links.pairs().to_vec())
+    }
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let Some([i, j, links]) = remaining.links(self.links.pairs()) else { return OfRemaining::Unknown };
+        if links.is_empty() {
+            return OfRemaining::Nothing;
+        }
+        let number =
+            |of: fn(&Spring) -> f64| Value::Numbers(links.iter().map(|&at| of(&self.springs[at])).collect());
+        let (k, length) = (number(|spring| spring.k), number(|spring| spring.length));
+        OfRemaining::Values(vec![Value::Indices(i), Value::Indices(j), k, length])
     }
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING

@@ -9,6 +9,7 @@ use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::driven_force::Drive;
 use super::following::{Following, Leaders};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::uniform_magnetic_field::MagneticField;
 use crate::error::{Error, Result};
@@ -202,10 +203,9 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn names_bodies(&self) -> bool {
         matches!(self.coupling(), Coupling::Listed(_))
     }
-    /// Whether a body that is put together of two would not feel it as both did: it names bodies, or has numbers for each
-    /// or charges.
-    fn tells_bodies_apart(&self) -> bool {
-        self.names_bodies()
+    /// What it is of the bodies that remain when some have become parts of others.
+    fn of_remaining(&self, _: &Remaining) -> OfRemaining {
+        if self.names_bodies() { OfRemaining::Unknown } else { OfRemaining::Same }
     }
     /// What it leaves constant.
     fn conserves(&self) -> Conserves {

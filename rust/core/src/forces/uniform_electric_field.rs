@@ -4,6 +4,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -14,7 +15,7 @@ use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
-use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::tiered;
 use crate::units::Units;
 use std::sync::Arc;
@@ -119,10 +120,10 @@ impl ForceTerm for UniformElectricField {
     fn names_bodies(&self) -> bool {
         self.charge.len() > 1
     }
-    fn tells_bodies_apart(&self) -> bool {
-        true
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let values = |charges| vec![Value::Vector(self.field), Value::Numbers(charges)];
+        OfRemaining::values(remaining.sums(&self.charge).map(values))
     }
-
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }

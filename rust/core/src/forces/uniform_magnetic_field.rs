@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
@@ -15,7 +16,7 @@ use crate::numerics::scaled::Scaled;
 use crate::ode::passes::updates::add_compensated;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
-use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::tiered;
 use crate::units::Units;
 use core::iter;
@@ -123,10 +124,10 @@ impl ForceTerm for UniformMagneticField {
     fn needs(&self) -> Needs {
         Needs { rotation: true, ..Needs::default() }
     }
-    fn tells_bodies_apart(&self) -> bool {
-        true
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        let values = |charges| vec![Value::Vector(self.field), Value::Numbers(charges)];
+        OfRemaining::values(remaining.sums(&self.charge).map(values))
     }
-
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }

@@ -21,6 +21,7 @@ use super::events::{Event, What};
 use super::plan::member;
 use super::request::Request;
 use crate::error::{Error, Result};
+use crate::forces::remaining::{OfRemaining, Remaining};
 use crate::words::{number, unknown};
 use core::fmt;
 use std::sync::Arc;
@@ -82,8 +83,8 @@ impl Collisions {
         }
     }
 
-    /// Refuses what has no meaning: what was lost does not come back backwards in time, and a merged body has no place in
-    /// the lists of a force, nor twice the force of one that asks for no mass.
+    /// Refuses what has no meaning: what was lost does not come back backwards in time, and some forces know no merged
+    /// bodies.
     fn check(self, scene: &Scene, direction: f64) -> Result<()> {
         let refused = |message: &str| Err(Error::invalid("collisions", message));
         match self {
@@ -99,28 +100,35 @@ impl Collisions {
             }
             _ => {}
         }
-        if self != Self::Merge {
-            return Ok(());
-        }
-        for force in scene.own_forces.iter().flat_map(|own| &own.sets).flatten().chain(&scene.forces) {
-            let class = force.declaration().class_name;
-            if force.tells_bodies_apart() {
-                let advice = "expected \"bounce\" or \"stop\", or forces that are the same for all bodies";
-                return refused(&format!(
-                    "{class} names bodies or has charges of its own, which a merger does not know to put together; {advice}"
-                ));
-            }
-            if (0..scene.particles).any(|body| force.needs_mass(body)) {
-                let advice = "expected \"bounce\" or \"stop\", or forces in proportion to the mass of a body, as \
-                              Gravity, UniformField and LinearDrag are";
-                return refused(&format!(
-                    "{class} acts on every body alike, whatever its mass, so one that is put together of two would feel \
-                     half of what both did; {advice}"
-                ));
-            }
-        }
-        Ok(())
+        if self == Self::Merge { check_mergers(scene) } else { Ok(()) }
     }
+}
+
+/// Refuses forces of which nothing says what they do to a merged body.
+fn check_mergers(scene: &Scene) -> Result<()> {
+    let refused = |message: String| Err(Error::invalid("collisions", message));
+    let everybody = Remaining::of(&(0..scene.particles).collect::<Vec<usize>>());
+    for force in scene.own_forces.iter().flat_map(|own| &own.sets).flatten().chain(&scene.forces) {
+        let class = force.declaration().class_name;
+        let of_remaining = force.of_remaining(&everybody);
+        if matches!(of_remaining, OfRemaining::Unknown) {
+            // Of numbers that fit no bodies it does not know, either.
+            force.validate(&scene.bodies_of(0))?;
+            return refused(format!(
+                "{class} tells bodies apart, and nothing says what one feels that is put together of two; expected \
+                 \"bounce\" or \"stop\", or forces that are the same for all bodies"
+            ));
+        }
+        let same = matches!(of_remaining, OfRemaining::Same);
+        if same && (0..scene.particles).any(|body| force.needs_mass(body)) {
+            return refused(format!(
+                "{class} acts on every body alike, whatever its mass, so one that is put together of two would feel half of \
+                 what both did; expected \"bounce\" or \"stop\", or forces in proportion to the mass of a body, as \
+                 Gravity, UniformField and LinearDrag are"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The event of a contact.

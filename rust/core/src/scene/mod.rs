@@ -253,8 +253,8 @@ impl Scene {
                 refuse_frames(forces)?;
             }
             forces.iter().try_for_each(|force| {
-                check_masses(&**force, bodies)?;
-                force.validate(bodies).map_err(|error| self.of_a_merger(error))
+                let checked = check_masses(&**force, bodies).and_then(|()| force.validate(bodies));
+                checked.map_err(|error| self.of_a_merger(error))
             })
         };
         if self.own_forces.is_none() {
@@ -263,10 +263,12 @@ impl Scene {
         (0..self.copies).try_for_each(|copy| check(self.forces_of(copy), &self.bodies_of(copy)))
     }
 
-    /// The refusal of places, with what to do about bodies that an earlier run has merged.
+    /// The refusal of places or masses, with what to do about bodies that an earlier run has merged.
     fn of_a_merger(&self, error: Error) -> Error {
         match (error, collisions::absorbed(self)) {
-            (Error::InvalidInput { argument, message }, Some((body, host))) if argument == "position" => {
+            (Error::InvalidInput { argument, message }, Some((body, host)))
+                if argument == "position" || argument == "mass" =>
+            {
                 let advice = format!(
                     "body {body} is a part of body {host} since they merged: run on with collisions=\"merge\", \"bounce\" \
                      or \"stop\", or make a scene without it"

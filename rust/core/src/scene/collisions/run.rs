@@ -30,7 +30,8 @@ pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tic
         events.push(contact(scene.radii(0).to_vec(), Vec::new()));
         Request { events, collisions: Some(rule), ..request.clone() }
     };
-    let merged = (0..scene.copies).find_map(|copy| whole_of(scene, copy, rule));
+    let mut wholes = (0..scene.copies).map(|copy| whole_of(scene, copy, rule));
+    let merged = wholes.find_map(Result::transpose).transpose()?;
     // Bodies that are parts of others differ from copy to copy: the plan is that of one.
     let plan = match merged {
         Some(first) => plan_through(&first, &looking(&first, Vec::new()), ticker)?,

@@ -1,9 +1,9 @@
 //! A copy on which no force acts, on its way through its collisions: rows are those of straight lines, contacts are known.
 
 use super::flights::Flights;
-use super::leg::Leg;
 use super::member::Member;
 use crate::error::{Error, Result};
+use crate::forces::remaining::Remaining;
 use crate::numerics::double_double::DoubleDouble;
 use crate::parallel::Ticker;
 use crate::scene::Scene;
@@ -66,8 +66,8 @@ impl Member {
         let before = |&t: &f64| contact.is_none_or(|(at, _)| self.along((t, 0.0)) <= at);
         let times = left[..left.partition_point(before)].to_vec();
         if !times.is_empty() {
-            let leg = Leg::of(&self.bodies);
-            let scene = leg.scene(whole, self.copy, &self.bodies, self.time());
+            let leg = Remaining::of(&self.bodies.host);
+            let scene = leg.scene(whole, self.copy, &self.bodies, self.time())?;
             let (_, total) = ticker.control().progress();
             let output = run_through(&scene, &self.asked(times, Vec::new()), ticker)?;
             if whole.copies == 1 {

@@ -1,9 +1,9 @@
 //! Events in a collision: what depends on velocities has another sign after it, and no zero in between.
 
-use super::leg::Leg;
 use super::member::Member;
 use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
+use crate::forces::remaining::Remaining;
 use crate::parallel::Ticker;
 use crate::scene::events::{Event, Focus, What, dot};
 use crate::scene::integrate::Ending;
@@ -41,8 +41,8 @@ impl Member {
         if request.events.is_empty() {
             return Ok(Vec::new());
         }
-        let leg = Leg::of(&self.bodies);
-        let scene = leg.scene(whole, self.copy, &self.bodies, self.time());
+        let leg = Remaining::of(&self.bodies.host);
+        let scene = leg.scene(whole, self.copy, &self.bodies, self.time())?;
         let value =
             |event: &Event| leg.what(&event.what).map_or(Ok(None), |what| value(&what, &scene, ticker));
         request.events.iter().map(value).collect()

@@ -2,29 +2,12 @@
 
 use super::super::{Impact, contact};
 use crate::error::Result;
+use crate::forces::remaining::Remaining;
 use crate::scene::Scene;
 use crate::scene::events::{Event, Focus, Function, What};
 use std::sync::Arc;
 
-/// The bodies of a leg.
-pub(super) struct Leg {
-    /// Those that are there, by their indices.
-    pub(super) bodies: Vec<usize>,
-    /// Which of them each body of the scene is, or is a part of.
-    pub(super) places: Vec<usize>,
-}
-
-impl Leg {
-    pub(super) fn of(impact: &Impact) -> Self {
-        let bodies: Vec<usize> = (0..impact.host.len()).filter(|&body| impact.host[body] == body).collect();
-        let mut places = vec![0; impact.host.len()];
-        for (place, &body) in bodies.iter().enumerate() {
-            places[body] = place;
-        }
-        let places = impact.host.iter().map(|&host| places[host]).collect();
-        Self { bodies, places }
-    }
-
+impl Remaining {
     /// The scene at this time, with what that leaves out.
     pub(super) fn scene(
         &self,
@@ -32,22 +15,22 @@ impl Leg {
         copy: usize,
         impact: &Impact,
         (t0, t0_rest): (f64, f64),
-    ) -> Scene {
+    ) -> Result<Scene> {
         let pick = |of: &[[f64; 3]]| self.bodies.iter().map(|&body| of[body]).collect();
-        Scene {
+        Ok(Scene {
             copies: 1,
             particles: self.bodies.len(),
             mass: self.bodies.iter().map(|&body| impact.mass[body]).collect(),
             position: pick(&impact.position),
             velocity: pick(&impact.velocity),
-            forces: whole.forces_of(copy).to_vec(),
+            forces: self.forces(whole.forces_of(copy))?,
             own_forces: None,
             radius: self.bodies.iter().map(|&body| impact.radius[body]).collect(),
             rigid: None,
             t0,
             t0_rest,
             continuation: None,
-        }
+        })
     }
 
     /// The events that are still to be looked for, and which of those that were asked for they are; that of a contact
@@ -95,7 +78,7 @@ impl Leg {
                 What::Apsis { body: place(body), about: Focus::Body(place(other)) }
             }
             What::Apsis { body, about } => What::Apsis { body: place(body), about: about.clone() },
-            What::Function(function) if self.bodies.len() < self.places.len() => {
+            What::Function(function) if self.some_have_gone() => {
                 What::Function(self.with_all(Arc::clone(function)))
             }
             What::Energy(_) | What::Contact(_) | What::Function(_) => what.clone(),

@@ -2,11 +2,11 @@
 
 use super::super::{Collision, Collisions, Impact};
 use super::flights::Flights;
-use super::leg::Leg;
 use super::squeezed::Squeezed;
 use super::start::{bodies_of, part_of};
 use super::wanted;
 use crate::error::{Error, Result};
+use crate::forces::remaining::Remaining;
 use crate::numerics::double_double::DoubleDouble;
 use crate::parallel::Ticker;
 use crate::scene::Scene;
@@ -148,8 +148,8 @@ impl Member {
         if self.flights.is_some() {
             return self.fly(whole, request, ticker);
         }
-        let leg = Leg::of(&self.bodies);
-        let mut scene = leg.scene(whole, self.copy, &self.bodies, self.time());
+        let leg = Remaining::of(&self.bodies.host);
+        let mut scene = leg.scene(whole, self.copy, &self.bodies, self.time())?;
         if touching.is_some() && request.events.is_empty() && flies(&scene, request) {
             return self.fly(whole, request, ticker);
         }
@@ -222,7 +222,7 @@ impl Member {
         &mut self,
         whole: &Scene,
         request: &Request,
-        leg: &Leg,
+        leg: &Remaining,
         names: &[usize],
         mut output: Output,
     ) -> Result<Option<(usize, usize)>> {
@@ -379,7 +379,7 @@ impl Outcome {
 }
 
 /// Copies rows of a leg to their places: from this one on, so many.
-fn record(all: &mut Columns, of_leg: &Columns, (from, rows): (usize, usize), leg: &Leg) {
+fn record(all: &mut Columns, of_leg: &Columns, (from, rows): (usize, usize), leg: &Remaining) {
     let particles = leg.places.len();
     for (into, own) in [(&mut all.position, &of_leg.position), (&mut all.velocity, &of_leg.velocity)] {
         if into.is_empty() {

@@ -1,12 +1,14 @@
 //! The start of a copy: which of its bodies are parts of others, which spheres overlap, what it goes on with.
 
-use super::super::{Collisions, Impact};
-use super::leg::Leg;
+use super::super::{Collisions, Impact, check_mergers};
 use crate::error::{Error, Result};
+use crate::forces::ForceTerm;
+use crate::forces::remaining::{OfRemaining, Remaining};
 use crate::scene::continuation::{Continuation, Held};
 use crate::scene::{Scene, distance};
 use crate::words::number;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The bodies of a copy.
 pub(super) fn bodies_of(scene: &Scene, copy: usize, rule: Collisions, direction: f64) -> Impact {
@@ -14,13 +16,16 @@ pub(super) fn bodies_of(scene: &Scene, copy: usize, rule: Collisions, direction:
     let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
     let radius = if radius.is_empty() { vec![0.0; scene.particles] } else { radius.to_vec() };
     let mut host: Vec<usize> = (0..scene.particles).collect();
-    // What names bodies cannot do without any; a merger refuses it.
     let merges = rule == Collisions::Merge;
-    if merges || !scene.forces_of(copy).iter().any(|force| force.tells_bodies_apart()) {
-        for (body, other) in parts(scene, copy) {
-            // Points that nobody has merged may be together, too.
-            host[body] = if merges || radius[other] > 0.0 { other } else { body };
-        }
+    for (body, other) in parts(scene, copy) {
+        // Points that nobody has merged may be together, too.
+        host[body] = if merges || radius[other] > 0.0 { other } else { body };
+    }
+    let remaining = Remaining::of(&host);
+    let unknown = |force: &Arc<dyn ForceTerm>| matches!(force.of_remaining(&remaining), OfRemaining::Unknown);
+    // What tells bodies apart cannot do without any; a merger refuses it.
+    if !merges && scene.forces_of(copy).iter().any(unknown) {
+        host = (0..scene.particles).collect();
     }
     let (mass, position, velocity) = (mass.to_vec(), position.to_vec(), velocity.to_vec());
     Impact { mass, radius, position, velocity, host, direction }
@@ -50,10 +55,16 @@ pub fn absorbed(scene: &Scene) -> Option<(usize, usize)> {
 }
 
 /// A copy without those of its bodies that are parts of others, if some are.
-pub(super) fn whole_of(scene: &Scene, copy: usize, rule: Collisions) -> Option<Scene> {
+pub(super) fn whole_of(scene: &Scene, copy: usize, rule: Collisions) -> Result<Option<Scene>> {
     let bodies = bodies_of(scene, copy, rule, 1.0);
-    let leg = Leg::of(&bodies);
-    (leg.bodies.len() < scene.particles).then(|| leg.scene(scene, copy, &bodies, (scene.t0, scene.t0_rest)))
+    let leg = Remaining::of(&bodies.host);
+    if !leg.some_have_gone() {
+        return Ok(None);
+    }
+    if rule == Collisions::Merge {
+        check_mergers(scene)?;
+    }
+    leg.scene(scene, copy, &bodies, (scene.t0, scene.t0_rest)).map(Some)
 }
 
 /// Refuses spheres that overlap at the start, unless they merge, which they do there.
@@ -83,7 +94,7 @@ pub(super) fn check_overlaps(scene: &Scene, copy: usize, rule: Collisions) -> Re
 }
 
 /// Of what a scene goes on with, that of the bodies of a leg.
-pub(super) fn part_of(from: &Continuation, whole: &Scene, copy: usize, leg: &Leg) -> Continuation {
+pub(super) fn part_of(from: &Continuation, whole: &Scene, copy: usize, leg: &Remaining) -> Continuation {
     let own = copy * whole.particles;
     let pick = |of: &[[f64; 3]]| leg.bodies.iter().filter_map(|body| of.get(own + body).copied()).collect();
     let fits = from.held.numbers.len() == 3 * whole.copies * from.held.blocks * from.held.slots
