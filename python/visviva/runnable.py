@@ -97,13 +97,14 @@ class Runnable(Shown, ABC, Generic[_Result]):
             ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,
             momentum, center of mass and volume are kept, the angular momentum of both about each other is not. The
             other has no mass and no radius from then on and goes with it: ``out.final.particles.mass`` tells, and a run
-            with any ``collisions`` goes on from there. Charges add; springs and dampers pull what their ends have become,
-            those between two that merge are gone; `Oblate` keeps the shape of a body that is left and loses that of one
-            that is not; `PostNewtonian` is of what its bodies are parts of. Other forces are in proportion to masses, as
-            `Gravity`, `UniformField` and `LinearDrag` are, or refused. ``"bounce"``: an impulse along the line of their
-            centers; a massless body bounces off a massive one, two massless ones as if they had equal masses. Of
-            several contacts at one instant those that approach fastest go first, and those of one body that approach
-            equally fast together, as symmetry asks [4]_; which are at one instant is told to 1e-12 of the radii.
+            with any ``collisions`` goes on from there. Charges add; springs and dampers pull what their ends have
+            become, those between two that merge are gone; `Oblate` keeps the shape of a body that is left and loses
+            that of one that is not; `PostNewtonian` is of what its bodies are parts of. Other forces are in proportion
+            to masses, as `Gravity`, `UniformField` and `LinearDrag` are, or refused. ``"bounce"``: an impulse along the
+            line of their centers; a massless body bounces off a massive one, two massless ones as if they had equal
+            masses. Of several contacts at one instant those that approach fastest go first, and those of one body that
+            approach equally fast together, as symmetry asks [4]_; which are at one instant is told to 1e-12 of the
+            radii.
             ``"stop"``: the run ends there, with `Status.STOPPED`. A row at the time of a collision has the state before
             it; steps begin anew after it. All bodies are on the same steps, no closed form is used while two may touch,
             and ``out.collisions`` is the table of them. Spheres that overlap at the start merge there, or are refused

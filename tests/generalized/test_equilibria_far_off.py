@@ -1,9 +1,14 @@
-"""Equilibria in coordinates that are no angles: the same in any unit of length, where the system starts near them."""
+"""Equilibria in coordinates that are no angles: the same in any unit of length, and wherever the system starts."""
+
+from typing import Any
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import visviva as vv
+
+x, y, z = (vv.coordinate(name) for name in "xyz")
 
 
 @pytest.mark.parametrize("length", [1.0, 2.8, 2.95, 5.0, 1e3])
@@ -31,3 +36,98 @@ def test_a_spring_is_no_angle() -> None:
     for each in (spring, spring.hamiltonian()):
         (found,) = each.equilibria()
         np.testing.assert_allclose(found.position, [5.0], rtol=1e-12, atol=0.0)
+
+
+def both(potential: sp.Expr, *coordinates: Any) -> tuple[vv.Lagrangian, vv.Hamiltonian]:
+    """Particles of unit mass in a potential, without a start that would tell its size."""
+    kinetic = sum(q.diff(vv.time) ** 2 for q in coordinates) / 2
+    names, momenta = ([sp.Symbol(f"{letter}{q.func}") for q in coordinates] for letter in "qp")
+    energy = sum(p**2 for p in momenta) / 2 + potential.subs(dict(zip(coordinates, names, strict=True)))
+    return vv.Lagrangian(kinetic - potential, coordinates), vv.Hamiltonian(energy, q=names, p=momenta)
+
+
+def places(system: vv.Lagrangian | vv.Hamiltonian) -> list[list[float]]:
+    """Where it stays, in an order that rounding does not change."""
+    found = np.array([each.position for each in system.equilibria()]).reshape(-1, len(system.coordinates))
+    size = np.abs(found).max(initial=1e-300)
+    in_order = np.lexsort((found / size).round(6).T[::-1])
+    told: list[list[float]] = found[in_order].tolist()
+    return told
+
+
+@pytest.mark.parametrize("size", [1e-10, 1e-3, 0.7, 10.0, 1e4, 1.5e11])
+def test_two_wells_of_any_size(size: float) -> None:
+    """At ± size, and a hill between; to rounding."""
+    for system in both((x**2 / size**2 - 1) ** 2 * size**2, x):
+        np.testing.assert_allclose(places(system), [[-size], [0.0], [size]], rtol=1e-13, atol=0)
+        assert [found.stable for found in system.equilibria()] == [True, False, True]
+    started = vv.Lagrangian(
+        x.diff(vv.time) ** 2 / 2 - (x**2 / size**2 - 1) ** 2, [x], position=[0.3 * size], velocity=[0]
+    )
+    np.testing.assert_allclose(places(started), [[-size], [0.0], [size]], rtol=1e-13, atol=0)
+
+
+@pytest.mark.parametrize("size", [3.4e-10, 1.0, 50.0])
+def test_atoms_rest_where_they_neither_push_nor_pull(size: float) -> None:
+    """At 2^(1/6) of the size of Lennard-Jones, on either side."""
+    for system in both(4e-21 * ((size / x) ** 12 - (size / x) ** 6), x):
+        minimum = 2 ** (1 / 6) * size
+        np.testing.assert_allclose(places(system), [[-minimum], [minimum]], rtol=1e-13, atol=0)
+
+
+def test_a_bond_far_from_the_origin() -> None:
+    """Morse's, whose force is nothing that a number holds on one side, and too much for one on the other."""
+    for system in both((1 - sp.exp(50 - x)) ** 2, x):
+        np.testing.assert_allclose(places(system), [[50.0]], rtol=1e-13, atol=0)
+
+
+def test_wells_of_several_sizes_in_a_system() -> None:
+    wells = [(q, size) for q, size in zip((x, y, z), (10.0, 20.0, 30.0), strict=True)]
+    for system in both(sum((q**2 - size**2) ** 2 for q, size in wells), x, y, z):
+        wanted = sorted([a, b, c] for a in (-10.0, 0.0, 10.0) for b in (-20.0, 0.0, 20.0) for c in (-30.0, 0.0, 30.0))
+        np.testing.assert_allclose(places(system), wanted, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("distance", [1.0, 10.0, 1.496e8])
+def test_the_points_of_lagrange_at_any_distance(distance: float) -> None:
+    """Two on the circle, at 60 degrees, and three on the line, which are those of the distance 1 but for the unit."""
+
+    def potential(unit: float) -> sp.Expr:
+        first, second = (sp.sqrt((x - at * unit) ** 2 + y**2) for at in (-0.1, 0.9))
+        return -sp.Float(0.9) / first - sp.Float(0.1) / second - (x**2 + y**2) / (2 * unit**3)
+
+    for system, of_one in zip(both(potential(distance), x, y), both(potential(1.0), x, y), strict=True):
+        found = np.array(places(system)) / distance
+        assert found.shape == (5, 2)
+        np.testing.assert_allclose(found, places(of_one), rtol=1e-10, atol=1e-12)
+        off_the_line = found[np.abs(found[:, 1]) > 0.1]
+        np.testing.assert_allclose(off_the_line, [[0.4, -np.sqrt(0.75)], [0.4, np.sqrt(0.75)]], rtol=1e-10, atol=0)
+
+
+def test_what_goes_on_and_on_is_told_as_far_as_a_turn() -> None:
+    """As cos(1.7 x) does; in a trap all of its places are found but those a search misses, and none is told twice."""
+    for system in both(-sp.cos(sp.Float(1.7) * x), x):
+        np.testing.assert_allclose(places(system), [[-np.pi / 1.7], [0.0], [np.pi / 1.7]], rtol=1e-14, atol=0)
+    in_a_trap = both(-sp.cos(sp.Float(1.7) * x) + x**2 / 100, x)[0]
+    found = np.array(places(in_a_trap))[:, 0]
+    # 1.7 sin(1.7 x) = −x/50 has roots up to |x| = 85.
+    assert np.abs(1.7 * np.sin(1.7 * found) + found / 50).max() < 1e-12
+    assert 80 < len(found) <= 93
+    assert np.diff(found).min() > 0.1
+
+
+def test_what_underflows_far_off_is_no_equilibrium() -> None:
+    for potential in (sp.exp(-(x**2)), sp.exp(-x) / x, 1 / x**2):
+        for system in both(potential, x):
+            assert places(system) in ([], [[0.0]], [pytest.approx([-1.0], abs=1e-14)])
+    for system in both(x**2 / 2 + y**2, x, y):
+        assert places(system) == [[0.0, 0.0]]
+
+
+@pytest.mark.parametrize("length", [1e-3, 1.0, 30.0, 1e3])
+def test_a_pendulum_on_a_circle_of_any_size(length: float) -> None:
+    """Without a start: it hangs, and stands."""
+    kinetic = (x.diff(vv.time) ** 2 + y.diff(vv.time) ** 2) / 2
+    system = vv.Lagrangian(kinetic - 9.8 * y, [x, y], constraints=[x**2 + y**2 - length**2])
+    np.testing.assert_allclose(places(system), [[0.0, -length], [0.0, length]], rtol=1e-13, atol=1e-13 * length)
+    assert [found.stable for found in system.equilibria()] == [True, False]

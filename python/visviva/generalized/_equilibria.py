@@ -20,10 +20,13 @@ from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, settled
+from visviva.generalized._other_sizes import at_other_sizes
 from visviva.generalized._searches import (
     SAME,
+    angles,
     by_sizes,
     distinguishing_coordinates,
+    is_free,
     place_at_start,
     starts_of_a_search,
     turned,
@@ -42,6 +45,8 @@ __all__ = ["Equilibrium", "equilibria"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
+#: On constraints equilibria are looked for as far as starts reach, which come near the ends of a circle.
+_BEYOND_STARTS = 1.1
 #: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
 _LAST_DIGITS = 2.0**-51
 _MADE_OF_THEM = 0.1
@@ -91,26 +96,39 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         if starts.shape[1] != n:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
         sizes = np.abs(starts).max(axis=1, initial=0.0)
-        return by_sizes(system, starts, sizes, lambda group: _found(system, group, everywhere=False))
-    starts = starts_of_a_search(n)
+        if system._constraints():
+            return by_sizes(system, starts, sizes, lambda group: _of_constrained(system, group, everywhere=False))
+        return by_sizes(system, starts, sizes, lambda group: _found(system, group, None))
+    starts, first = starts_of_a_search(n), place_at_start(system)
     if system.position is not None:
-        starts = np.concatenate([starts, system.position[None, :]])
-    return _found(system, starts, everywhere=True)
-
-
-def _found(system: Lagrangian, starts: NDArray[np.float64], *, everywhere: bool) -> list[Equilibrium]:
-    """Equilibria from starts (S, n) of about one size, or of those within a turn."""
+        starts = np.concatenate([starts, first[None, :]])
     if system._constraints():
-        return _of_constrained(system, starts, everywhere=everywhere)
+        return _of_constrained(system, starts, everywhere=True)
+    is_angle = angles(*matrices_along(system, turned(first)))
+    found = _found(system, starts, within(first, is_angle))
+
+    def ends(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        told = _ends(system, places)[0]
+        return told[where_something_acts(lambda at: matrices_along(system, at), told, n)]
+
+    def search(places: NDArray[np.float64], most: NDArray[np.float64]) -> list[Equilibrium]:
+        return _found(system, places, most)
+
+    found = at_other_sizes(system, is_angle, found, ends, search)
+    return sorted(found, key=lambda each: tuple(each.position))
+
+
+def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
+    """Equilibria from starts (S, n) of about one size, or of those with coordinates up to most (n)."""
     n, sizes = len(system.coordinates), Sizes(system)
-    reached = _reached(system, starts, sizes, insist=not everywhere)
+    reached = _reached(system, starts, sizes, most)
     distinguishing = distinguishing_coordinates(system)
-    if everywhere:
-        if distinguishing.any():
-            reached = reached[where_something_acts(lambda at: matrices_along(system, at), reached, starts, n)]
+    if most is not None:
+        if distinguishing.any() and not is_free(matrices_along(system, starts)):
+            reached = reached[where_something_acts(lambda at: matrices_along(system, at), reached, n)]
         # All places along a cyclic coordinate are alike.
         reached[:, ~distinguishing] = 0.0
-        reached = reached[(np.abs(reached) <= _within(system)).all(axis=1)]
+        reached = reached[(np.abs(reached) <= most).all(axis=1)]
     results: list[Equilibrium] = []
     without_mass, without_slopes = [], []
     for place in _once(reached, starts, distinguishing):
@@ -168,7 +186,7 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
         starts = system._start()[None, : len(system.coordinates)]
     reached, far = constrained.reached(starts)
     if everywhere:
-        reached = reached[(np.abs(reached) <= np.fmax(np.pi, far) + 1e-6).all(axis=1)]
+        reached = reached[(np.abs(reached) <= np.fmax(np.pi + 1e-6, _BEYOND_STARTS * far)).all(axis=1)]
     n = len(system.coordinates)
     distinguishing = np.ones(n, dtype=bool)
     cyclic = [index for index in system._structure["cyclic"] if constrained.without_any[index]]
@@ -204,8 +222,10 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     return results
 
 
-def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, insist: bool) -> NDArray[np.float64]:
-    """Where Newton's method ends (S, n): what its steps tell, and what is nearly told where forces are round-off.
+def _ends(
+    system: Lagrangian, starts: NDArray[np.float64], *, insist: bool = False
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where Newton's method ends: what its steps tell (T, n), and what is nearly told as forces are round-off (S, n).
 
     To ``insist`` is to let forces shrink from step to step, from where it comes to nothing otherwise.
     """
@@ -222,9 +242,17 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
     found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
-    if not insist:
+    return told, nearly
+
+
+def _reached(
+    system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, most: NDArray[np.float64] | None
+) -> NDArray[np.float64]:
+    """Where Newton's method ends (S, n), as well as forces tell it; with coordinates up to most (n), if given."""
+    told, nearly = _ends(system, starts, insist=most is None)
+    if most is not None:
         # Thousands of starts may have run away from each other to where nothing acts.
-        distinguishing, most = distinguishing_coordinates(system), _within(system)
+        distinguishing = distinguishing_coordinates(system)
         near = [(np.abs(each) <= most)[:, distinguishing] for each in (told, nearly)]
         told, nearly = told[near[0].all(axis=1)], nearly[near[1].all(axis=1)]
     told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)
@@ -232,11 +260,6 @@ def _reached(system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, *, i
         # Forces that have no value at rest, as those of dry friction, are told by name.
         linearization(system, starts[0], sizes)
     return told
-
-
-def _within(system: Lagrangian) -> NDArray[np.float64]:
-    start = place_at_start(system)
-    return within(start, *matrices_along(system, turned(start)))
 
 
 def _leaves(system: Lagrangian, small: Linearization, sizes: Sizes) -> bool:

@@ -19,11 +19,14 @@ from visviva.generalized._kinks import with_limits
 from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
 from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
 from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
+from visviva.generalized._other_sizes import at_other_sizes
 from visviva.generalized._probe import terms_of
 from visviva.generalized._searches import (
     SAME,
+    angles,
     by_sizes,
     distinguishing_coordinates,
+    is_free,
     place_at_start,
     starts_of_a_search,
     turned,
@@ -48,6 +51,9 @@ _ON_THE_AXIS = 1e-7
 _MADE_OF_THEM = 0.1
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
+#: Newton's steps from starts of the right size, and what part of that the last one may be.
+_FEW_STEPS = 40
+_SETTLED = 1e-6
 #: States are found to this part of their sizes.
 _FOUND = SAME
 
@@ -67,9 +73,46 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
                 "near", f"expected states of {n} coordinates and momenta, got an array of shape {states.shape}"
             )
         sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
-        return by_sizes(system, states, sizes, lambda group: _found(system, group))
-    at_rest = _at_rest(system, np.concatenate([starts_of_a_search(n), place_at_start(system)[None]]))
-    return _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), everywhere=True)
+        return by_sizes(system, states, sizes, lambda group: _found(system, group, None))
+    first = place_at_start(system)
+    at_rest = _at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
+    moved = np.concatenate([turned(first), np.zeros((2 * n, n))], axis=1)
+    is_angle = angles(*_forces(system, moved))
+    found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
+
+    def ends(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        states = _at_rest(system, places)
+        told = reached(system, states, scales_of(system, states), steps=_FEW_STEPS)[0]
+        told = told[where_something_acts(lambda at: _forces(system, at), told, n)]
+        return told[_stay(system, told, most=_SETTLED * np.abs(places).max()), :n]
+
+    def search(places: NDArray[np.float64], most: NDArray[np.float64]) -> list[Equilibrium]:
+        found = _found(system, _at_rest(system, places), most)
+        states = np.array([[*each.position, *each.momentum] for each in found]).reshape(-1, 2 * n)
+        stay = _stay(system, states, most=_SETTLED * np.abs(places).max())
+        return [each for each, stays in zip(found, stay.tolist(), strict=True) if stays]
+
+    found = at_other_sizes(system, is_angle, found, ends, search)
+    return sorted(found, key=lambda each: (*each.position, *each.momentum))
+
+
+def _stay(system: Hamiltonian, states: NDArray[np.float64], *, most: float) -> NDArray[np.bool_]:
+    """Whether Newton's step from states (S, 2n) is short, by what is known there and nowhere else.
+
+    What rates are made of at other starts may be so much more that all of these seem to be round-off.
+    """
+    rates, slopes = rates_and_slopes(system, states)
+    rows = np.abs(slopes).max(axis=2)
+    rows[rows == 0.0] = 1.0
+    slopes = slopes / rows[..., None]
+    columns = np.abs(slopes).max(axis=1)
+    columns[columns == 0.0] = 1.0
+    finite = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(rates).all(axis=1)
+    step = np.full(states.shape, np.inf)
+    inverse = np.linalg.pinv(slopes[finite] / columns[finite][:, None, :], rcond=_FOUND)
+    step[finite] = np.einsum("sij,sj->si", inverse, (rates / rows)[finite]) / columns[finite]
+    short: NDArray[np.bool_] = (np.abs(step[:, : states.shape[1] // 2]) <= most).all(axis=1)
+    return short
 
 
 def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -87,25 +130,23 @@ def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.flo
     return states
 
 
-def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool = False) -> list[Equilibrium]:
-    """Equilibria from starts (S, 2n) of about one size, or of those within a turn."""
+def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
+    """Equilibria from starts (S, 2n) of about one size, or of those with coordinates up to most (n)."""
     n = len(system.coordinates)
     looked_at = np.abs(states).max(axis=0)
     scales = scales_of(system, states)
     starts = states
     states, begun = reached(system, starts, scales)
     without = np.setdiff1d(np.arange(len(starts)), begun)
-    if not everywhere and len(without):
+    if most is None and len(without):
         states = np.concatenate([states, reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.concatenate([distinguishing_coordinates(system), np.ones(n, dtype=bool)])
-    if everywhere:
-        if distinguishing[:n].any():
-            states = states[where_something_acts(lambda at: _forces(system, at), states, starts, n)]
+    if most is not None:
+        if distinguishing[:n].any() and not is_free(_forces(system, starts)):
+            states = states[where_something_acts(lambda at: _forces(system, at), states, n)]
         # All places along a cyclic coordinate are alike, and angles beyond a turn are the same.
         states[:, ~distinguishing] = 0.0
-        place = place_at_start(system)
-        moved = np.concatenate([turned(place), np.zeros((n + 1, n))], axis=1)
-        states = states[(np.abs(states[:, :n]) <= within(place, *rates_and_slopes(system, moved))).all(axis=1)]
+        states = states[(np.abs(states[:, :n]) <= most).all(axis=1)]
     size = np.maximum(looked_at, np.abs(states).max(axis=0, initial=0.0))
     size[size == 0.0] = 1.0
     states = np.where(np.abs(states) < 1e-14 * size, 0.0, states)
@@ -115,7 +156,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], *, everywhere: bool
         states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
     energy = _energy(system)
     places = sorted(told_apart(energy, places, size, lambda _: scales.units), key=tuple)
-    if everywhere:
+    if most is not None:
         # At a pole of the coordinates H is singular, and what has no momentum there may go anywhere.
         regular = [place for place in places if not _is_pole(system, place)]
         if places and not regular:

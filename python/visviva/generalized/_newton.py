@@ -54,15 +54,21 @@ def scales_of(system: Hamiltonian, states: NDArray[np.float64]) -> Scales:
     slopes = np.abs(rates_and_slopes(system, states)[1])
     slopes = np.where(np.isfinite(slopes), slopes, 0.0).max(axis=0)
     units = balanced_units(slopes[None])[0]
-    size = float((np.abs(states) / units)[:, : len(units) // 2].max(initial=0.0))
-    sizes = units * (size if size > 0.0 else 1.0)
-    return Scales(units, sizes, np.finfo(float).eps * (slopes @ sizes))
+    with np.errstate(over="ignore"):
+        size = float((np.abs(states) / units)[:, : len(units) // 2].max(initial=0.0))
+        sizes = units * (size if size > 0.0 else 1.0)
+        return Scales(units, sizes, np.finfo(float).eps * (slopes @ sizes))
 
 
 def reached(
-    system: Hamiltonian, states: NDArray[np.float64], scales: Scales, *, descending: bool = False
+    system: Hamiltonian,
+    states: NDArray[np.float64],
+    scales: Scales,
+    *,
+    descending: bool = False,
+    steps: int = _STEPS,
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Where Newton's method ends from each state (S, 2n), if it comes to an equilibrium, and from which.
+    """Where Newton's method ends from each state (S, 2n), if it comes to rest in so many steps, and from which.
 
     ``descending``, steps are halved until the rates are less.
     """
@@ -75,7 +81,7 @@ def reached(
     at_kinks, from_there = [states[:0]], [begun[:0]]
     # Those that stand still are not moved on with the rest.
     still: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]] = []
-    for _ in range(_STEPS):
+    for _ in range(steps):
         rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
         kinks = (rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))

@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SAME",
+    "angles",
     "by_sizes",
     "distinguishing_coordinates",
+    "is_free",
     "place_at_start",
     "starts_of_a_search",
     "turned",
@@ -61,18 +63,23 @@ def place_at_start(system: Lagrangian | Hamiltonian) -> NDArray[np.float64]:
 
 
 def turned(start: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give a place (n,), and the same after a turn of each coordinate, shape (n + 1, n)."""
-    return np.vstack([start, start + 2.0 * np.pi * np.eye(len(start))])
+    """Give places (2n, n): for each coordinate one, where it is within a turn, and then those a turn of it on."""
+    # A turn is nothing beside a length that is large.
+    within = np.where(np.eye(len(start), dtype=bool), np.remainder(start, 2.0 * np.pi), start)
+    return np.vstack([within, within + 2.0 * np.pi * np.eye(len(start))])
 
 
-def within(start: NDArray[np.float64], forces: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far off each coordinate may be (n,): angles a turn, others about as far as the system starts, too.
-
-    Which is which is told by forces and their slopes at the places of `turned`.
-    """
+def angles(forces: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which coordinates (n) are angles: forces and their slopes at the places of `turned` are the same after a turn."""
     rows = np.concatenate([forces, 2.0 * np.pi * slopes.reshape(len(slopes), -1)], axis=1)
+    before, after = np.split(rows, 2)
     with np.errstate(all="ignore"):
-        is_angle = np.abs(rows[1:] - rows[0]).max(axis=1) <= _REPEATS * np.abs(rows[0]).max(initial=0.0)
+        same: NDArray[np.bool_] = np.abs(after - before).max(axis=1) <= _REPEATS * np.abs(before).max(axis=1)
+    return same
+
+
+def within(start: NDArray[np.float64], is_angle: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """How far off each coordinate may be (n,): angles a turn, others about as far as the system starts, too."""
     return np.where(is_angle, _A_TURN, np.fmax(_A_TURN, _AS_FAR * np.abs(start)))
 
 
@@ -115,25 +122,29 @@ def distinguishing_coordinates(system: Lagrangian | Hamiltonian) -> NDArray[np.b
 def where_something_acts(
     forces: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]],
     places: NDArray[np.float64],
-    starts: NDArray[np.float64],
     coordinates: int,
 ) -> NDArray[np.bool_]:
     """Whether forces have slopes at places (S, m), or are on both sides of the first numbers of these.
 
-    Where a potential underflows all is in balance, and no place is an equilibrium more than another. Of what is free at
-    all starts it is everywhere.
+    Where a potential underflows all is in balance, and no place is an equilibrium more than another.
     """
-
-    def largest(of: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        found, slopes = (np.where(np.isfinite(each), np.abs(each), 0.0) for each in forces(of))
-        return found.max(axis=1), slopes.max(axis=(1, 2))
-
-    if not (largest(starts)[0] > 0.0).any():
-        return np.ones(len(places), dtype=bool)
     steps = _ASIDE * np.eye(coordinates, places.shape[1])
-    beside = [np.minimum(*(largest(places + sign * step)[0] for sign in (1.0, -1.0))) for step in steps]
-    acts: NDArray[np.bool_] = np.maximum(largest(places)[1], np.max(beside, axis=0)) > _UNDERFLOWN
+    sides = ([_largest(forces(places + sign * step))[0] for sign in (1.0, -1.0)] for step in steps)
+    beside = [np.minimum(*both) for both in sides]
+    acts: NDArray[np.bool_] = np.maximum(_largest(forces(places))[1], np.max(beside, axis=0)) > _UNDERFLOWN
     return acts
+
+
+def is_free(forces: tuple[NDArray[np.float64], NDArray[np.float64]]) -> bool:
+    """Whether there is no force (S, n), of those with their slopes (S, n, n), so that equilibria are everywhere."""
+    return not bool((_largest(forces)[0] > 0.0).any())
+
+
+def _largest(
+    forces: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    found, slopes = (np.where(np.isfinite(each), np.abs(each), 0.0) for each in forces)
+    return found.max(axis=1), slopes.max(axis=(1, 2))
 
 
 def by_sizes(
