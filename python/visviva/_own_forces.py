@@ -34,17 +34,17 @@ def forces_of_copies(
         place = _place(scene, which)
         if not hasattr(named, "items") or not named:
             raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
-        known = scene.forces[place]._values()
+        kinds = {parameter.name: parameter.kind for parameter in scene.forces[place]._parameters}
         for name, given in _own_values(scene.forces[place], named).items():
-            if name not in known:
-                hint = did_you_mean(str(name), tuple(known))
-                raise InvalidInput(
-                    "parameters", f"expected parameters of {type(scene.forces[place]).__name__}, got {name!r}{hint}"
-                )
-            values.setdefault(place, {})[name] = _values_by_copy(name, given)
+            if name not in kinds:
+                hint = did_you_mean(str(name), tuple(kinds))
+                known = f"{type(scene.forces[place]).__name__} ({', '.join(kinds)})"
+                raise InvalidInput("parameters", f"expected parameters of {known}, got {name!r}{hint}")
+            by_copy = _bodies_by_copy if kinds[name] == "indices" else _values_by_copy
+            values.setdefault(place, {})[name] = by_copy(name, given)
     count = _count({name: given for named in values.values() for name, given in named.items()})
     return tuple(
-        tuple(_with_values(force, values.get(place), copy) for place, force in enumerate(scene.forces))
+        tuple(_with_values(scene, force, values.get(place), copy) for place, force in enumerate(scene.forces))
         for copy in range(count)
     )
 
@@ -84,12 +84,13 @@ def _own_values(force: Force, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
     return {**{name: given for name, given in named.items() if str(name) not in names}, "values": rows}
 
 
-def _with_values(force: Force, values: dict[str, Sequence[Any]] | None, copy: int) -> Force:
+def _with_values(scene: Scene, force: Force, values: dict[str, Sequence[Any]] | None, copy: int) -> Force:
     if values is None:
         return force
     own = {name: given[copy] for name, given in values.items()}
     try:
-        return type(force)(**{**force._values(), **own})
+        changed = type(force)(**{**force._values(), **own})
+        return changed._resolved(scene.particles.names, len(scene.particles))
     except InvalidInput as error:
         raise InvalidInput("parameters", f"{type(force).__name__} of copy {copy}: {error}") from error
 
@@ -103,11 +104,21 @@ def _values_by_copy(name: str, given: Any) -> Sequence[Any]:
     except (TypeError, ValueError):
         array = np.zeros(())
     if array.ndim == 0 or len(array) == 0:
-        raise InvalidInput(
-            "parameters", f"expected values of {name!r} with a leading axis over the copies, got {given!r}"
-        )
+        raise _without_axis(name, given)
     values: list[Any] = array.tolist() if array.ndim == 1 else list(array)
     return values
+
+
+def _bodies_by_copy(name: str, given: Any) -> Sequence[Any]:
+    """The bodies of each copy, by their indices or their names."""
+    bodies = given.tolist() if isinstance(given, np.ndarray) else given
+    if not isinstance(bodies, list | tuple) or not bodies:
+        raise _without_axis(name, given)
+    return bodies
+
+
+def _without_axis(name: str, given: Any) -> InvalidInput:
+    return InvalidInput("parameters", f"expected values of {name!r} with a leading axis over the copies, got {given!r}")
 
 
 def _place(scene: Scene, which: Any) -> int:

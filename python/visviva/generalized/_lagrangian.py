@@ -62,16 +62,15 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     nonholonomic : sequence of sympy.Expr or callable, optional
         The left sides of constraints a(q, t)·q̇ + b(q, t) = 0.
     consistent : {"project"}, optional
-        Puts a start that violates the constraints on them, also those that `at` and `ensemble` make; they are
-        refused otherwise.
+        Puts a start that violates the constraints on them, also those that `at` and `ensemble` make; otherwise `run`
+        and `plan` refuse it.
     t0 : float
         The time of the start.
 
     Raises
     ------
     InvalidInput
-        For symbols without a value, functions that the core does not know, coordinates without kinetic energy, starts
-        off the constraints.
+        For symbols without a value, functions that the core does not know, coordinates without kinetic energy.
     ConvergenceError
         Where a start to be put on the constraints comes to none.
 

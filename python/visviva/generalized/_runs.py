@@ -311,6 +311,8 @@ class Runs(States):
         from visviva.generalized._plan import GeneralizedPlan
 
         asked, _ = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
+        if self.position is not None:
+            self._check_start()
         return GeneralizedPlan._of(as_system(self), asked)
 
 

@@ -176,7 +176,7 @@ class States(Shown):
         parameters : dict, optional
             Values (B,) of some parameters.
         consistent : {"project"}, optional
-            Puts starts that violate the constraints on them; they are refused otherwise. If not given, they are put
+            Puts starts that violate the constraints on them; a run refuses them otherwise. If not given, they are put
             there if the system was made with it.
 
         Returns

@@ -251,6 +251,11 @@ class Symbols:
             return InvalidInput(
                 argument, f"the second derivative of {inner} is in it: only first ones make equations of motion"
             )
+        if inner in self._coordinates:
+            return InvalidInput(
+                argument,
+                f"{tree} is in it, a function of coordinates and momenta: write the velocity in terms of these",
+            )
         if isinstance(inner, self._sympy.core.function.AppliedUndef):
             return InvalidInput(
                 argument, f"{tree} is in it, but {inner} is not among the coordinates {list(self._coordinates)}; add it"

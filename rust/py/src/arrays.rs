@@ -10,7 +10,9 @@ use core::mem::ManuallyDrop;
 use core::ptr::NonNull;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::npyffi::NPY_ARRAY_ALIGNED;
-use numpy::{Element, IntoPyArray, PyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use visviva_core::Error;
 use visviva_core::memory::collected;
@@ -37,7 +39,9 @@ pub(crate) fn copied<T: Element + Copy, const D: usize>(
     // SAFETY: the array is alive and its flags are only read.
     let flags = unsafe { (*array.as_array_ptr()).fields.flags };
     if flags & NPY_ARRAY_ALIGNED == 0 {
-        return Err(refused("the array is not aligned in memory; pass a copy of it".to_owned()));
+        // As arrays are that a worker gets as a part of a message.
+        let aligned = array.call_method0("copy")?.cast_into::<PyArrayDyn<T>>()?;
+        return copied(name, &aligned.readonly(), shape);
     }
     let view = array.as_array();
     let what = "a copy of it";

@@ -11,6 +11,9 @@ use crate::numerics::real::{Mask, Real};
 /// What elimination may take from a diagonal element, times that: what is lost beyond is beneath two digits.
 const GROWTH: f64 = 64.0;
 
+/// What is left of a diagonal element, as a part of it, that is nothing but its rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// L D Lᵀ of a symmetric matrix, its lower triangle row by row, in place: L below the diagonal, 1/D on it. `row` is room; of
 /// `inner` rows the matrix is bordered. Where it needed no pivots.
 #[inline(always)]
@@ -36,7 +39,7 @@ pub(super) fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S], inner: usize) -
         if i < inner {
             let taken = (diagonal - pivot).abs();
             sound = sound.and(taken.less_equal(S::splat(GROWTH) * diagonal.abs()));
-            sound = sound.and(S::zero().less(pivot.abs()));
+            sound = sound.and((S::splat(ROUNDING) * diagonal.abs()).less(pivot.abs()));
         }
         matrix[start + i] = S::one() / pivot;
     }
@@ -95,7 +98,13 @@ pub(super) fn invert<S: Scalar>(matrix: &mut [S], rows: usize, sound: S::Mask) {
     }
 }
 
-/// The inverse of a symmetric matrix: Gauss and Jordan's elimination with the largest pivot of each column.
+/// Whether a symmetric matrix of so many rows has no inverse but what roundings make of one.
+pub fn is_singular(triangle: &[f64], rows: usize) -> bool {
+    inverse(triangle, rows).iter().any(|x| !x.is_finite())
+}
+
+/// The inverse of a symmetric matrix, no numbers if it has none: Gauss and Jordan's elimination with the largest pivot of each
+/// column, of those that are more than the rounding of what they were before.
 fn inverse(triangle: &[f64], n: usize) -> Vec<f64> {
     let at =
         |row: usize, column: usize| triangle[row.max(column) * (row.max(column) + 1) / 2 + row.min(column)];
@@ -105,18 +114,27 @@ fn inverse(triangle: &[f64], n: usize) -> Vec<f64> {
             (0..n).map(|column| at(row, column)).chain((0..n).map(|column| unit(row, column))).collect()
         })
         .collect();
+    // How large each entry was.
+    let mut sizes: Vec<Vec<f64>> =
+        rows.iter().map(|row| row[..n].iter().map(|x| x.abs()).collect()).collect();
     for column in 0..n {
-        let size = |row: &Vec<f64>| row[column].abs();
-        let largest =
-            (column..n).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b]))).unwrap_or(column);
+        let size = |row: usize| rows[row][column].abs();
+        let told = (column..n).filter(|&row| size(row) > ROUNDING * sizes[row][column]);
+        let Some(largest) = told.max_by(|&a, &b| size(a).total_cmp(&size(b))) else {
+            return vec![f64::NAN; n * (n + 1) / 2];
+        };
         rows.swap(column, largest);
+        sizes.swap(column, largest);
         let scale = 1.0 / rows[column][column];
         let pivot: Vec<f64> = rows[column].iter().map(|x| x * scale).collect();
-        for (row, values) in rows.iter_mut().enumerate() {
+        for (row, (values, sizes)) in rows.iter_mut().zip(&mut sizes).enumerate() {
             if row != column {
                 let factor = values[column];
                 for (x, &p) in values.iter_mut().zip(&pivot) {
                     *x = (-factor).multiply_add(p, *x);
+                }
+                for (size, x) in sizes.iter_mut().zip(&*values) {
+                    *size = size.max(x.abs());
                 }
             }
         }

@@ -13,7 +13,7 @@ pub mod function;
 pub mod graph;
 mod identity;
 pub mod intervals;
-mod linear;
+pub mod linear;
 pub mod machine;
 pub mod nodes;
 pub mod precise;

@@ -6,13 +6,20 @@
 
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Dependence, number};
+use crate::expressions::linear::is_singular;
 use crate::expressions::{Graph, Id, Node};
 
 /// Unknowns of which cofactors are no longer than an elimination.
 const LARGEST_BY_COFACTORS: usize = 3;
 
-/// x of `matrix · x = right`, the matrix symmetric; `None` if it is singular whatever the numbers are.
+/// x of `matrix · x = right`, the matrix symmetric; `None` if it is singular whatever the numbers are, or of numbers that are but
+/// for their rounding.
 pub(super) fn solved(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Option<Vec<Id>> {
+    let triangle = matrix.iter().enumerate().flat_map(|(i, row)| row[..=i].iter().copied());
+    let numbers: Option<Vec<f64>> = triangle.map(|entry| graph.as_constant(entry)).collect();
+    if numbers.is_some_and(|numbers| is_singular(&numbers, right.len())) {
+        return None;
+    }
     if (2..=LARGEST_BY_COFACTORS).contains(&right.len()) && !keeps_pivots(graph, matrix) {
         return by_cofactors(graph, matrix, right);
     }

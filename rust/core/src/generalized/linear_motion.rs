@@ -9,6 +9,7 @@ use super::model::{Kind, Model};
 use super::run::{Request, Solution};
 use crate::error::{Error, Result};
 use crate::expressions::graph::Dependence;
+use crate::expressions::linear::is_singular;
 use crate::expressions::precise::Precise;
 use crate::expressions::program::Output;
 use crate::expressions::{Graph, Id};
@@ -231,14 +232,14 @@ impl Interval for Part<'_> {
 fn divide(matrix: &mut [Vec<DoubleDouble>], right: &mut [Vec<DoubleDouble>]) -> Result<()> {
     let n = matrix.len();
     let size = |x: DoubleDouble| x.to_f64().abs();
+    let triangle = matrix.iter().enumerate().flat_map(|(i, row)| row[..=i].iter());
+    if is_singular(&triangle.map(|x| x.to_f64()).collect::<Vec<f64>>(), n) {
+        return Err(Error::invalid("parameters", "the mass matrix is singular for these"));
+    }
     for column in 0..n {
         let best = (column..n).fold(column, |best, row| {
             if size(matrix[row][column]) > size(matrix[best][column]) { row } else { best }
         });
-        let pivot = size(matrix[best][column]);
-        if pivot == 0.0 || pivot.is_nan() {
-            return Err(Error::invalid("parameters", "the mass matrix is singular for these"));
-        }
         matrix.swap(column, best);
         right.swap(column, best);
         let (pivots, below) = matrix.split_at_mut(column + 1);

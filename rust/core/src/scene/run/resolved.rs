@@ -11,11 +11,14 @@ use super::super::request::Request;
 use super::{Outcome, Part, Reached, half_steps};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
+use crate::forces::ForceTerm;
 use crate::forces::bodies::PreciseBodies;
+use crate::forces::term::Coupling;
 use crate::forces::together::{Energy, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::units::Units;
+use std::sync::Arc;
 
 /// A sum over so few pairs is nothing beside a run.
 const FEW_PAIRS: u64 = 500;
@@ -32,8 +35,10 @@ const WORTH_A_LOOK: f64 = 1e-2;
 /// … and so many times what a last digit makes of the energy is that.
 const ROUNDINGS: f64 = 8.0;
 
-/// Forces that may change the energy by anything seldom change it by more than this part of what there was.
+/// Forces that may change the energy by anything seldom change it by more than this part of what there was; …
 const ALL_THERE_WAS: f64 = 1.0;
+/// … where bodies may come close to each other, or to a center, a passage between two steps changes it by this part or more.
+const BY_A_PASSAGE: f64 = 0.01;
 
 /// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
 const FASTER: f64 = 3.0;
@@ -100,11 +105,12 @@ pub(super) fn look(
             };
             outcome.energy_error = error(whole);
             let (begun_with, told) = (kinetic.plus(size), outcome.energy_error > WORTH_A_LOOK);
-            if matches!(plan.energy, Energy::Driven | Energy::Unknown)
+            let usual = if passages_matter(scene, copy) { BY_A_PASSAGE } else { ALL_THERE_WAS };
+            if plan.energy != Energy::Constant
                 && !told
                 && outcome.unresolved.is_none()
                 && begun_with.to_f64() >= LEAST
-                && change.over(begun_with).to_f64().abs() > ALL_THERE_WAS
+                && change.over(begun_with).to_f64().abs() > usual
                 && half_steps::pays(part, outcome.counts.evaluations)
             {
                 let Ok(half) = half_steps::energy_at_end(part, request, ticker) else { return Ok(()) };
@@ -154,6 +160,13 @@ pub(in crate::scene) fn energy_of(
     bodies.settle();
     let (potential, _) = potential_and_virial(scene.forces_of(copy), bodies, 1, ticker)?;
     Ok((kinetic_energy(bodies), potential))
+}
+
+/// Whether a force of a copy may be the stronger the closer bodies come, to each other or to a center.
+fn passages_matter(scene: &Scene, copy: usize) -> bool {
+    let grows =
+        |force: &Arc<dyn ForceTerm>| force.coupling() == Coupling::AllPairs || force.center().is_some();
+    scene.forces_of(copy).iter().any(grows)
 }
 
 /// What drives may give to a copy in a span of time, as a part of its energies: their forces times the ways of all bodies, at
