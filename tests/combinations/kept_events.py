@@ -176,4 +176,22 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             backward=True,
         ),
     ),
+    # One and the same distance looked for twice, of which the first ends the run: both are in the table at that time.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="sofroniou_spaletta10",
+            bodies=11,
+            forces=(("DrivenForce", 28), ("DrivenForce", 62)),
+            seed=1,
+            tame=False,
+            members=11,
+            own=("mass", "numbers", "velocity", "position", "parameters"),
+            steps=24,
+            decades=6,
+            outputs=3,
+            columns=("momentum", "position"),
+            events=(("distance", 83), ("plane", 78), ("distance", 83)),
+        ),
+    ),
 ]
