@@ -161,6 +161,9 @@ struct Run<'a> {
     cost: Cost,
     /// The events of the units in the lanes, if they are looked for side by side.
     abreast: Option<Abreast<'a>>,
+    /// The end of a step that events are looked for in, and its inside.
+    after: State<Lanes>,
+    polynomials: events::Polynomials,
     /// Those that follow the units in the lanes.
     followers: Option<Followers<'a>>,
     /// What of the time of each lane the clock counts: all of it, or a step of those that it follows.
@@ -204,6 +207,8 @@ impl<'a> Run<'a> {
             norm: measure::norm(first.state_shape(1), &mut forces, Lanes::splat(job.rtol), together),
             forces,
             between: state.clone(),
+            after: state.clone(),
+            polynomials: events::Polynomials::default(),
             outputs: Arc::clone(outputs),
             first,
             state,

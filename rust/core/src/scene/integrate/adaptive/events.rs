@@ -11,14 +11,39 @@ use crate::ode::system::System;
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
 
+/// The polynomials of coordinates that were asked for in a step, in room that is kept from step to step.
+#[derive(Default)]
+pub(super) struct Polynomials {
+    of: Vec<(usize, Vec<[Lanes; 2]>)>,
+    known: usize,
+}
+
+impl Polynomials {
+    /// That of a coordinate, made if it is not known yet.
+    fn of(&mut self, coordinate: usize, make: impl FnOnce(&mut Vec<[Lanes; 2]>)) -> &[[Lanes; 2]] {
+        let known = self.of[..self.known].iter().position(|(other, _)| *other == coordinate);
+        let index = known.unwrap_or(self.known);
+        if known.is_none() {
+            if index == self.of.len() {
+                self.of.push((coordinate, Vec::new()));
+            }
+            let (of, terms) = &mut self.of[index];
+            *of = coordinate;
+            terms.clear();
+            make(terms);
+            self.known += 1;
+        }
+        &self.of[index].1
+    }
+}
+
 /// A step of all lanes; what one lane asks for is there for the others.
 struct Inside<'r> {
     trial: &'r mut dyn Trial<Lanes>,
     system: &'r mut dyn System<Lanes>,
     state: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
-    /// The polynomials of coordinates that were asked for.
-    terms: Vec<(usize, Vec<[Lanes; 2]>)>,
+    polynomials: &'r mut Polynomials,
     outcome: &'r Settled<Lanes>,
     ready: bool,
     /// The fraction of the step that a state was asked for last.
@@ -57,14 +82,9 @@ impl Interpolant for Inside<'_> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.ready(ticker)?;
-        let known = self.terms.iter().position(|(other, _)| *other == coordinate);
-        let index = known.unwrap_or_else(|| {
-            let mut terms = Vec::new();
-            self.trial.polynomial(coordinate, self.outcome.h, &mut terms);
-            self.terms.push((coordinate, terms));
-            self.terms.len() - 1
-        });
-        into.extend(self.terms[index].1.iter().map(|term| term.map(|sum| sum.0[lane])));
+        let Self { polynomials, trial, outcome, .. } = self;
+        let terms = polynomials.of(coordinate, |terms| trial.polynomial(coordinate, outcome.h, terms));
+        into.extend(terms.iter().map(|term| term.map(|sum| sum.0[lane])));
         Ok(())
     }
 }
@@ -84,7 +104,7 @@ impl Run<'_> {
         if !outcome.accepted.any() {
             return Ok(());
         }
-        let Self { job, trial, forces, state, between, slots, clock, abreast, .. } = self;
+        let Self { job, trial, forces, state, between, slots, clock, abreast, after, polynomials, .. } = self;
         let span = |lane: usize| Span { from: outcome.from.0[lane], to: clock.elapsed.0[lane] };
         let [looked_at, in_step] = match abreast {
             Some(abreast) => {
@@ -107,13 +127,14 @@ impl Run<'_> {
             return Ok(());
         }
         // The end of the step is read while its inside is asked for.
-        let after = trial.next().clone();
+        after.copy_from(trial.next());
+        polynomials.known = 0;
         let mut inside = Inside {
             trial: &mut **trial,
             system: forces.system(),
             state,
             between,
-            terms: Vec::new(),
+            polynomials,
             outcome,
             ready: dense.any(),
             last: None,
@@ -124,7 +145,7 @@ impl Run<'_> {
             let Some(Slot { unit, watch: Some(watch), counts, .. }) = slot else { continue };
             // Each pays for what it reads itself.
             (inside.last, inside.reads) = (None, 0);
-            watch.look(unit, span(lane), (&after, lane), &mut inside, ticker)?;
+            watch.look(unit, span(lane), (after, lane), &mut inside, ticker)?;
             counts.evaluations += read * inside.reads;
         }
         self.charge(suspects.and(dense.not()), self.cost.dense);
