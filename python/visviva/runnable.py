@@ -58,16 +58,16 @@ class Runnable(Shown, ABC, Generic[_Result]):
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         time_transformation : {"potential_energy", "distance"}, optional
-            For the steps of a symplectic method to change without losing what it is for: they are equal not in time
-            but in another time, dt ∝ 1/Ω, and `dt` is the first of them; close encounters are resolved. ``"distance"``:
-            Ω = Σ 1/r over pairs of bodies one of which has mass (softened as the forces are) and over centers of
-            fields; reversible under any forces of places and time [1]_. ``"potential_energy"``: Ω = −V, of bodies with
-            mass under `Gravity` or in an attractive Coulomb `CentralField` and nothing else; symplectic [2]_ [3]_. With
-            compositions of leapfrogs (which then begin with a drift) two bodies stay on their conic to round-off and
-            err in time alone, through a collision, too. For methods with ``Method.time_transformation``; anything else
-            is refused. Made for few bodies, which share a step; a massless one has a time of its own, as if it were
-            alone with those that have mass. A state between steps costs four of them. Run on from ``final``, `dt` is
-            again the first step.
+            For the steps of a symplectic method to change without losing what it is for: they are equal not in time but
+            in another time, dt ∝ 1/Ω, and `dt` is the first of them; close encounters are resolved. ``"distance"``: Ω =
+            Σ 1/r over pairs of bodies one of which has mass and over centers of fields (softened as the forces are, by
+            the length of a potential that is finite at r = 0); reversible under any forces of places and time [1]_.
+            ``"potential_energy"``: Ω = −V, of bodies with mass under `Gravity` or in an attractive Coulomb
+            `CentralField` and nothing else; symplectic [2]_ [3]_. With compositions of leapfrogs (which then begin with
+            a drift) two bodies stay on their conic to round-off and err in time alone, through a collision, too. For
+            methods with ``Method.time_transformation``; anything else is refused. Made for few bodies, which share a
+            step; a massless one has a time of its own, as if it were alone with those that have mass. A state between
+            steps costs four of them. Run on from ``final``, `dt` is again the first step.
         rtol : float, optional
             Relative tolerance of an adaptive method, at least 2.3e-14. If not given 1e-9 of a method that is named, and
             1e-12 of what `auto` chooses, whose order is so high that three more digits cost little. A fixed-step method

@@ -116,12 +116,62 @@ def test_what_goes_on_and_on_is_told_as_far_as_a_turn() -> None:
     assert np.diff(found).min() > 0.1
 
 
-def test_what_underflows_far_off_is_no_equilibrium() -> None:
-    for potential in (sp.exp(-(x**2)), sp.exp(-x) / x, 1 / x**2):
-        for system in both(potential, x):
-            assert places(system) in ([], [[0.0]], [pytest.approx([-1.0], abs=1e-14)])
-    for system in both(x**2 / 2 + y**2, x, y):
+@pytest.mark.parametrize(
+    ("potential", "wanted"),
+    [
+        (sp.exp(-(x**2)), [0.0]),
+        (sp.exp(-x) / x, [-1.0]),
+        (1 / x**2, []),
+        # Forces that vanish far off by cancellation, and but for rounding sooner.
+        (sp.sqrt(1 + x**2) - x, []),
+        (sp.log(sp.cosh(x)) - x, []),
+        (sp.sqrt(x**2 + 1) - sp.sqrt(x**2 + 4), [0.0]),
+        # No numbers far off.
+        (sp.cosh(x), [0.0]),
+        (sp.cosh(x / 5) - x, [5 * float(np.arcsinh(5.0))]),
+        (x**2 / 2 - sp.sqrt(9 - x**2), [0.0]),
+        (sp.asin(x), []),
+        (sp.exp(x**2), [0.0]),
+    ],
+    ids=str,
+)
+def test_what_is_nothing_far_off_is_no_equilibrium(potential: sp.Expr, wanted: list[float]) -> None:
+    for system in both(potential, x):
+        np.testing.assert_allclose(np.ravel(places(system)), wanted, rtol=1e-13, atol=1e-14)
+
+
+def test_charges_that_cancel_far_off() -> None:
+    """A linear quadrupole: of the field that falls with the fourth power of the distance rounding is left."""
+    squares = (x - 3) ** 2 + y**2, (x + 3) ** 2 + y**2, x**2 + y**2 + 1
+    for system in both(1 / sp.sqrt(squares[0]) + 1 / sp.sqrt(squares[1]) - 2 / sp.sqrt(squares[2]), x, y):
         assert places(system) == [[0.0, 0.0]]
+
+
+@pytest.mark.parametrize("mu", [0.01, 3e-6])
+@pytest.mark.parametrize("distance", [1.0, 10.0])
+def test_points_beside_a_planet_in_a_turning_frame(mu: float, distance: float) -> None:
+    """The Earth's are a hundredth aside, and along its orbit there is a valley without any."""
+    qx, qy, px, py = sp.symbols("qx qy px py")
+    first, second = (sp.sqrt((qx - at * distance) ** 2 + qy**2) for at in (-mu, 1 - mu))
+    rate = sp.Float(distance**-1.5)
+    function = (px**2 + py**2) / 2 - rate * (qx * py - qy * px) - (1 - mu) / first - mu / second
+    found = np.array(places(vv.Hamiltonian(function, q=[qx, qy], p=[px, py]))) / distance
+    assert found.shape == (5, 2)
+    off_the_line = found[np.abs(found[:, 1]) > 0.1]
+    np.testing.assert_allclose(
+        off_the_line, [[0.5 - mu, -np.sqrt(0.75)], [0.5 - mu, np.sqrt(0.75)]], rtol=1e-10, atol=0
+    )
+    on_the_line = np.sort(found[np.abs(found[:, 1]) <= 0.1][:, 0])
+    pulls = (1 - mu) * (on_the_line + mu) / np.abs(on_the_line + mu) ** 3
+    pulls += mu * (on_the_line - 1 + mu) / np.abs(on_the_line - 1 + mu) ** 3
+    np.testing.assert_allclose(pulls, on_the_line, rtol=1e-9, atol=0)
+    assert on_the_line[0] < -mu < on_the_line[1] < 1 - mu < on_the_line[2]
+
+
+def test_bonds_far_off_in_two_coordinates() -> None:
+    bonds = (1 - sp.exp((40 - x) / 2)) ** 2 + (1 - sp.exp((30 - y) / 2)) ** 2
+    for system in both(bonds, x, y):
+        np.testing.assert_allclose(places(system), [[40.0, 30.0]], rtol=1e-12, atol=0)
 
 
 @pytest.mark.parametrize("length", [1e-3, 1.0, 30.0, 1e3])

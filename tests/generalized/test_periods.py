@@ -183,3 +183,53 @@ def test_a_period_of_too_many_steps_says_what_tells_it() -> None:
     assert times[1] - times[0] == pytest.approx(wanted, rel=4.5e4**2 * EPSILON, abs=0)
     slow = vv.Hamiltonian(lambda q, p, t: np.sqrt(1.0 + p[0] ** 2) + q[0] ** 2 / 2.0, ["x"], position=start)
     assert slow.period() == pytest.approx(wanted, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "bound"),
+    # What the last digit of a place is of its distance from the top, in the logarithm that the period is.
+    [(3.1, 4e-16), (3.14, 1e-14), (3.1415, 1e-14), (3.14159, 1e-12), (3.1415926, 1e-10), (3.1415926535, 1e-7)],
+)
+def test_a_pendulum_thrown_from_near_the_top(amplitude: float, bound: float) -> None:
+    """It turns at the opposite place whatever its energy is: elliptic integrals of the amplitude that is given."""
+    with mpmath.workdps(50):
+        k = mpmath.sin(mpmath.mpf(amplitude) / 2)
+        period = 4 * mpmath.ellipk(k**2)
+        action = 8 / mpmath.pi * (mpmath.ellipe(k**2) - (1 - k**2) * mpmath.ellipk(k**2))
+    for start in (amplitude, -amplitude):
+        pendulum = vv.systems.pendulum(g=1.0, position=[start])
+        assert pendulum.period() == pytest.approx(float(period), rel=bound, abs=0)
+        assert pendulum.action_variable() == pytest.approx(float(action), rel=4 * EPSILON, abs=0)
+
+
+def test_a_place_whose_last_digits_are_its_distance_from_the_top_is_refused() -> None:
+    with pytest.raises(vv.InvalidInput, match="the last digit of its place changes its period by a part of"):
+        vv.systems.pendulum(g=1.0, position=[3.14159265358979]).period()
+
+
+@pytest.mark.parametrize("start", [1.2, 1.414, 1.4143, 1.5, 3.0])
+def test_two_wells_that_are_opposite(start: float) -> None:
+    """Within one of them nothing is opposite; over both, a quarter tells the rest."""
+    with mpmath.workdps(40):
+        far, energy = mpmath.mpf(start), (mpmath.mpf(start) ** 2 - 1) ** 2
+        over = energy > 1
+        near = -far if over else mpmath.sqrt(1 - mpmath.sqrt(energy))
+        # 2 (E − V) = 2 (far² − x²)(x² − other), of which (far − x)(x − near) goes with x = center + half sin s.
+        other = 2 - far**2
+        center, half = (far + near) / 2, (far - near) / 2
+
+        def rate(s: Any) -> Any:
+            x = center + half * mpmath.sin(s)
+            return 1 / mpmath.sqrt(2 * (x**2 - other if over else (far + x) * (x + near)))
+
+        period = 2 * mpmath.quad(rate, mpmath.linspace(-mpmath.pi / 2, mpmath.pi / 2, 40))
+    assert moving((x**2 - 1) ** 2, start).period() == pytest.approx(float(period), rel=1e-11, abs=0)
+
+
+def test_what_moves_at_the_start_is_not_turned_there() -> None:
+    """Even, too, but its amplitude is not the start; and one about another place than zero."""
+    fast = vv.systems.pendulum(g=1.0, position=[1.0], velocity=[0.5])
+    amplitude = float(np.arccos(np.cos(1.0) - 0.125))
+    assert fast.period() == pytest.approx(vv.systems.pendulum(g=1.0, position=[amplitude]).period(), rel=1e-14, abs=0)
+    shifted = moving(-sp.cos(x - sp.Float(0.25)), 1.25)
+    assert shifted.period() == pytest.approx(vv.systems.pendulum(g=1.0, position=[1.0]).period(), rel=1e-14, abs=0)

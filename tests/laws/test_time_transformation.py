@@ -235,3 +235,27 @@ def test_the_plan_tells() -> None:
     plan = kepler(0.5).plan(1.0, method="leapfrog", dt=0.01, time_transformation="distance")
     assert any(row[:2] == ("time transformation", "distance") for row in plan.rows)
     assert "0.01 at the start" in str(plan)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8"])
+@pytest.mark.parametrize("potential", [vv.potentials.Plummer(-1.0, 1.0), vv.potentials.Plummer(-8.0, 2.0)], ids=repr)
+def test_bodies_pass_through_the_center_of_a_smooth_well(method: str, potential: vv.potentials.Potential) -> None:
+    """Where the potential is smooth, so are the steps: Ω is softened by its length, of a field and between bodies."""
+    falling = vv.Particles([1.0], [[1.0, 0, 0]])
+    pair = vv.Particles([1.0, 1.0], [[0.5, 0, 0], [-0.5, 0, 0]])
+    for scene in (vv.Scene(falling, vv.CentralField(potential)), vv.Scene(pair, vv.PairPotential(potential))):
+        right = scene.run(t=10.0, method="verner98", rtol=1e-13)
+        out = scene.run(t=10.0, method=method, dt=0.005, time_transformation="distance")
+        # Leapfrog errs by dt² times some of the ten oscillations.
+        bound = 2e-4 if method == "leapfrog" else 1e-11
+        np.testing.assert_allclose(out.position[-1], right.position[-1], rtol=0, atol=bound)
+
+
+def test_the_harder_of_two_fields_about_one_point_is_watched() -> None:
+    """A charge in a soft well: it is the charge that a body comes close to."""
+    body = vv.Particles([1.0], [[1.0, 0, 0]], [[0, 0.05, 0]])
+    fields = [vv.CentralField(vv.potentials.Plummer(-1.0, 1.0)), vv.CentralField(vv.potentials.Coulomb(-1.0))]
+    right = vv.Scene(body, *fields).run(t=2.0, method="verner98", rtol=1e-13)
+    for order in (fields, fields[::-1]):
+        out = vv.Scene(body, *order).run(t=2.0, method="kahan_li8", dt=0.002, time_transformation="distance")
+        np.testing.assert_allclose(out.position[-1], right.position[-1], rtol=0, atol=1e-9)

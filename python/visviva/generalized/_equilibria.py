@@ -19,8 +19,8 @@ from visviva.generalized._analysis import free_matrices, linearization, lineariz
 from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._higher_orders import rises
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
-from visviva.generalized._multiple_zeros import at_rest, settled
-from visviva.generalized._other_sizes import at_other_sizes
+from visviva.generalized._multiple_zeros import at_rest, round_off, settled
+from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._searches import (
     SAME,
     angles,
@@ -107,14 +107,13 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     is_angle = angles(*matrices_along(system, turned(first)))
     found = _found(system, starts, within(first, is_angle))
 
-    def ends(places: NDArray[np.float64]) -> NDArray[np.float64]:
-        told = _ends(system, places)[0]
-        return told[where_something_acts(lambda at: matrices_along(system, at), told, n)]
-
-    def search(places: NDArray[np.float64], most: NDArray[np.float64]) -> list[Equilibrium]:
-        return _found(system, places, most)
-
-    found = at_other_sizes(system, is_angle, found, ends, search)
+    energy = at_rest(system, Sizes(system))
+    asked = AtRest(
+        lambda places: matrices_along(system, places),
+        lambda places: round_off(energy, places, np.abs(places).max(axis=1, keepdims=True)).all(axis=1),
+        lambda places: equilibria(system, places),
+    )
+    found = with_other_sizes(system, asked, is_angle, found)
     return sorted(found, key=lambda each: tuple(each.position))
 
 
@@ -222,12 +221,13 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     return results
 
 
-def _ends(
-    system: Lagrangian, starts: NDArray[np.float64], *, insist: bool = False
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where Newton's method ends: what its steps tell (T, n), and what is nearly told as forces are round-off (S, n).
+def _reached(
+    system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, most: NDArray[np.float64] | None
+) -> NDArray[np.float64]:
+    """Where Newton's method ends (S, n): what its steps tell, and what is nearly told where forces are round-off.
 
-    To ``insist`` is to let forces shrink from step to step, from where it comes to nothing otherwise.
+    With coordinates up to most (n); if that is not given, forces may shrink from step to step, from where it comes to
+    nothing otherwise.
     """
     n = len(system.coordinates)
 
@@ -236,20 +236,12 @@ def _ends(
 
     every = ends(starts, descending=False)
     without = [index for index, each in enumerate(every) if not (each and each[1])]
-    if insist and without:
+    if most is None and without:
         for index, each in zip(without, ends(starts[without], descending=True), strict=True):
             every[index] = each if each and each[1] else every[index]
     found = [each for each in every if each]
     told = np.array([place for place, by_steps in found if by_steps]).reshape(-1, n)
     nearly = np.array([place for place, by_steps in found if not by_steps]).reshape(-1, n)
-    return told, nearly
-
-
-def _reached(
-    system: Lagrangian, starts: NDArray[np.float64], sizes: Sizes, most: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
-    """Where Newton's method ends (S, n), as well as forces tell it; with coordinates up to most (n), if given."""
-    told, nearly = _ends(system, starts, insist=most is None)
     if most is not None:
         # Thousands of starts may have run away from each other to where nothing acts.
         distinguishing = distinguishing_coordinates(system)

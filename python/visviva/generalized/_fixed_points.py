@@ -18,8 +18,8 @@ from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
 from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
 from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
-from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
-from visviva.generalized._other_sizes import at_other_sizes
+from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of, solved
+from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._probe import terms_of
 from visviva.generalized._searches import (
     SAME,
@@ -51,9 +51,8 @@ _ON_THE_AXIS = 1e-7
 _MADE_OF_THEM = 0.1
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
-#: Newton's steps from starts of the right size, and what part of that the last one may be.
-_FEW_STEPS = 40
-_SETTLED = 1e-6
+#: Forces lead no further from where they vanish than this part of what is looked at.
+_SETTLED = 1e-5
 #: States are found to this part of their sizes.
 _FOUND = SAME
 
@@ -75,59 +74,76 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
         sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
         return by_sizes(system, states, sizes, lambda group: _found(system, group, None))
     first = place_at_start(system)
-    at_rest = _at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
+    at_rest, _ = _at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
     moved = np.concatenate([turned(first), np.zeros((2 * n, n))], axis=1)
     is_angle = angles(*_forces(system, moved))
     found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
 
-    def ends(places: NDArray[np.float64]) -> NDArray[np.float64]:
-        states = _at_rest(system, places)
-        told = reached(system, states, scales_of(system, states), steps=_FEW_STEPS)[0]
-        told = told[where_something_acts(lambda at: _forces(system, at), told, n)]
-        return told[_stay(system, told, most=_SETTLED * np.abs(places).max()), :n]
+    energy = _energy(system)
 
-    def search(places: NDArray[np.float64], most: NDArray[np.float64]) -> list[Equilibrium]:
-        found = _found(system, _at_rest(system, places), most)
-        states = np.array([[*each.position, *each.momentum] for each in found]).reshape(-1, 2 * n)
-        stay = _stay(system, states, most=_SETTLED * np.abs(places).max())
-        return [each for each, stays in zip(found, stay.tolist(), strict=True) if stays]
+    def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        states, known = _at_rest(system, places)
+        rounding = np.ones(len(places), dtype=bool)
+        rounding[known] = round_off(energy, states, np.abs(states).max(axis=1, keepdims=True)).all(axis=1)
+        return rounding
 
-    found = at_other_sizes(system, is_angle, found, ends, search)
+    asked = AtRest(
+        lambda places: _forces_at_rest(system, places),
+        balanced,
+        lambda places: fixed_points(system, _at_rest(system, places)[0]),
+    )
+    found = with_other_sizes(system, asked, is_angle, found)
     return sorted(found, key=lambda each: (*each.position, *each.momentum))
 
 
-def _stay(system: Hamiltonian, states: NDArray[np.float64], *, most: float) -> NDArray[np.bool_]:
-    """Whether Newton's step from states (S, 2n) is short, by what is known there and nowhere else.
+def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like.
 
-    What rates are made of at other starts may be so much more that all of these seem to be round-off.
+    And at which of the places: those where rates are numbers.
     """
-    rates, slopes = rates_and_slopes(system, states)
-    rows = np.abs(slopes).max(axis=2)
-    rows[rows == 0.0] = 1.0
-    slopes = slopes / rows[..., None]
-    columns = np.abs(slopes).max(axis=1)
-    columns[columns == 0.0] = 1.0
-    finite = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(rates).all(axis=1)
-    step = np.full(states.shape, np.inf)
-    inverse = np.linalg.pinv(slopes[finite] / columns[finite][:, None, :], rcond=_FOUND)
-    step[finite] = np.einsum("sij,sj->si", inverse, (rates / rows)[finite]) / columns[finite]
-    short: NDArray[np.bool_] = (np.abs(step[:, : states.shape[1] // 2]) <= most).all(axis=1)
-    return short
-
-
-def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like."""
     n = places.shape[1]
-    states = np.concatenate([places, np.zeros_like(places)], axis=1)
+    states, index = np.concatenate([places, np.zeros_like(places)], axis=1), np.arange(len(places))
     for _ in range(_STEPS_TO_REST):
         rates, slopes = rates_and_slopes(system, states)
         known = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
-        states, rates, slopes = states[known], rates[known], slopes[known]
+        states, rates, slopes, index = states[known], rates[known], slopes[known], index[known]
+        if not rates[:, :n].any():
+            break
         inverse = np.linalg.pinv(slopes[:, :n, n:], rcond=_FOUND)
         states[:, n:] -= np.einsum("sij,sj->si", inverse, rates[:, :n])
         if not (np.abs(rates[:, :n]) > _FOUND * np.abs(slopes[:, :n, n:]).max(initial=0.0)).any():
             break
-    return states
+    return states, index
+
+
+def _forces_at_rest(
+    system: Hamiltonian, places: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forces (S, n) at places at rest, and minus their derivatives (S, n, n) where momenta stay those of rest."""
+    n = places.shape[1]
+    states, known = _at_rest(system, places)
+    forces, stiffness = np.full(places.shape, np.nan), np.full((*places.shape, n), np.nan)
+    rates, slopes = rates_and_slopes(system, states)
+    softer = -slopes[:, n:, :n]
+    if slopes[:, :n, :n].any():
+        softer += slopes[:, n:, n:] @ np.linalg.pinv(slopes[:, :n, n:], rcond=_FOUND) @ slopes[:, :n, :n]
+    forces[known], stiffness[known] = rates[:, n:], softer
+    return forces, stiffness
+
+
+def _stay(system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether forces at rest lead no further from states (S, 2n), by what is known there and nowhere else.
+
+    What rates are made of at other starts may be so much more that along a valley all of these seem to be round-off.
+    """
+    n = states.shape[1] // 2
+    forces, stiffness = _forces_at_rest(system, states[:, :n])
+    rows = np.abs(stiffness).max(axis=2)
+    judged = np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
+    step = np.zeros(forces.shape)
+    step[judged] = solved(stiffness[judged] / rows[judged][..., None], forces[judged] / rows[judged])
+    stays: NDArray[np.bool_] = (np.abs(step) <= _SETTLED * looked_at[:n]).all(axis=1)
+    return stays
 
 
 def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
@@ -142,6 +158,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
         states = np.concatenate([states, reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.concatenate([distinguishing_coordinates(system), np.ones(n, dtype=bool)])
     if most is not None:
+        states = states[_stay(system, states, looked_at)]
         if distinguishing[:n].any() and not is_free(_forces(system, starts)):
             states = states[where_something_acts(lambda at: _forces(system, at), states, n)]
         # All places along a cyclic coordinate are alike, and angles beyond a turn are the same.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["Scales", "rates_and_slopes", "reached", "scales_of"]
+__all__ = ["Scales", "rates_and_slopes", "reached", "scales_of", "solved"]
 
 #: Newton's steps: enough for the linear way to a zero of the twelfth order, by a twelfth each time, to `SAME`.
 _STEPS = 240
@@ -61,14 +61,9 @@ def scales_of(system: Hamiltonian, states: NDArray[np.float64]) -> Scales:
 
 
 def reached(
-    system: Hamiltonian,
-    states: NDArray[np.float64],
-    scales: Scales,
-    *,
-    descending: bool = False,
-    steps: int = _STEPS,
+    system: Hamiltonian, states: NDArray[np.float64], scales: Scales, *, descending: bool = False
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Where Newton's method ends from each state (S, 2n), if it comes to rest in so many steps, and from which.
+    """Where Newton's method ends from each state (S, 2n), if it comes to an equilibrium, and from which.
 
     ``descending``, steps are halved until the rates are less.
     """
@@ -81,7 +76,7 @@ def reached(
     at_kinks, from_there = [states[:0]], [begun[:0]]
     # Those that stand still are not moved on with the rest.
     still: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]] = []
-    for _ in range(steps):
+    for _ in range(_STEPS):
         rates, slopes = rates_and_slopes(system, states)
         # Nothing changes there, whether or not rates have derivatives, as 3 q |q| has.
         kinks = (rates == 0.0).all(axis=1) & ~np.isfinite(slopes).all(axis=(1, 2))
@@ -100,7 +95,7 @@ def reached(
         with np.errstate(over="ignore"):
             # A step without end is not a number further on.
             wanted = rates / most[..., 0]
-        step = -_solved(slopes / most, wanted) * scales.units
+        step = -solved(slopes / most, wanted) * scales.units
         length = np.abs(step / alike).max(axis=1, keepdims=True)
         # Linear rates lead however far.
         linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
@@ -125,7 +120,7 @@ def reached(
     return np.concatenate([states[kept], *at_kinks]), np.concatenate([begun[kept], *from_there])
 
 
-def _solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
+def solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
     """Least solutions (S, m) of linear equations: by singular values only of those matrices that may be singular."""
     solved: NDArray[np.float64] = np.empty(wanted.shape)
     with np.errstate(all="ignore"):

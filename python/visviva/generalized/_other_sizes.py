@@ -1,16 +1,16 @@
 """Equilibria of coordinates that are lengths: those farther off than a turn, and those much closer together.
 
-The one idea: nobody knows the unit of a length, so that a few starts of each power of ten tell where a search like that
-over a turn is worth its while.
+The one idea: nobody knows the unit of a length, so that Newton's method runs from a few starts of each power of ten,
+each judged by itself. Where some come to a place that has forces all around, more starts are worth their while.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from visviva.errors import InvalidInput
+from visviva.generalized._newton import solved
 from visviva.generalized._searches import distinguishing_coordinates, starts_of_a_search
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["at_other_sizes"]
+__all__ = ["AtRest", "with_other_sizes"]
 
 #: Sizes of lengths that are looked at, and what is of one.
 _SIZES = 10.0 ** np.arange(-15.0, 16.0)
@@ -32,19 +32,118 @@ _FEW = 96
 #: Equilibria of more sizes than this, or more of one, are those of what goes on and on, as cos(x) does.
 _MOST_SIZES = 4
 _MOST = 100
-#: Places are one that differ by less than this part of their sizes, and the same if by less than that.
+#: Newton's steps from starts of the right size, and what part of that the last one may be.
+_STEPS = 40
+_ARRIVED = 1e-10
+#: Forces are looked at this part of the size aside, where they are not those of a zero by rounding.
+_ASIDE = 1e-2
+#: Places are one that differ by less than this part of their sizes, and known exactly if by less than that.
 _ONE = 1e-6
-_SAME = 1e-12
+_KNOWN = 1e-12
 
 
-def _different(places: NDArray[np.float64]) -> int:
-    """How many of these (R, n) there are."""
-    count = 0
+class AtRest(NamedTuple):
+    """What is asked of a system at rest.
+
+    Forces (S, n) and minus their derivatives (S, n, n) at places (S, n); at which places (S) all forces are round-off;
+    and the equilibria that are reached from places.
+    """
+
+    forces: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+    balanced: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+    near: Callable[[NDArray[np.float64]], list[Equilibrium]]
+
+
+def with_other_sizes(
+    system: Lagrangian | Hamiltonian, at_rest: AtRest, is_angle: NDArray[np.bool_], known: list[Equilibrium]
+) -> list[Equilibrium]:
+    """Equilibria that are known, and those at lengths of any other size."""
+    lengths = distinguishing_coordinates(system) & ~is_angle
+    if not lengths.any():
+        return known
+    over_a_turn = starts_of_a_search(len(lengths))
+    some = over_a_turn[:: max(1, len(over_a_turn) // _FEW)]
+
+    def found_from(starts: NDArray[np.float64], sizes: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Places (R, n) where forces vanish, of each size, from starts that are scaled to it."""
+        every = np.repeat(sizes, len(starts))
+        tall = np.where(lengths, np.tile(starts, (len(sizes), 1)) * (every * _HALF_WAY / np.pi)[:, None], 0.0)
+        tall += np.where(lengths, 0.0, np.tile(starts, (len(sizes), 1)))
+        places, every = _arrived(at_rest, tall, every, lengths)
+        return [_different(places[every == size]) for size in sizes.tolist()]
+
+    hits, crowded = [], 0
+    for size, places in zip(_SIZES.tolist(), found_from(some, _SIZES), strict=True):
+        # Zero is of all sizes; it counts beside another.
+        new = places[places[:, lengths].any(axis=1) & ~_are_among(places, known, _KNOWN)]
+        if len(new) > _FEW // 2:
+            # Every start comes to a place of its own, on a curve or next to each other everywhere.
+            crowded += 1
+        elif len(new):
+            hits.append(size)
+    if not hits or len(hits) + crowded > _MOST_SIZES:
+        return known
+    places = np.concatenate(found_from(over_a_turn, np.array(hits)))
+    if len(places) > _MOST:
+        return known
+    found = at_rest.near(places)
+    # A search among larger places has told them less exactly.
+    again = _are_among(np.array([each.position for each in known]).reshape(-1, len(lengths)), found, _ONE)
+    return found + [each for each, told in zip(known, again.tolist(), strict=True) if not told]
+
+
+def _arrived(
+    at_rest: AtRest, places: NDArray[np.float64], sizes: NDArray[np.float64], lengths: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where Newton's method comes to from places (S, n) of sizes (S), if it stays at that size, and the sizes.
+
+    What comes to zero is of any size, as the hill between two small wells is.
+    """
+    arrived, of_sizes = [], []
+    for _ in range(_STEPS):
+        with np.errstate(all="ignore"):
+            forces, stiffness = at_rest.forces(places)
+            rows = np.abs(stiffness).max(axis=2)
+            finite = (
+                np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
+            )
+            places, sizes = places[finite], sizes[finite]
+            forces, stiffness, rows = forces[finite], stiffness[finite], rows[finite]
+            if not len(places):
+                break
+            step = solved(stiffness / rows[..., None], forces / rows)
+            units = np.where(lengths, sizes[:, None], 1.0)
+            length = np.abs(step / units).max(axis=1)
+            places = places + step / np.fmax(length, 1.0)[:, None]
+            far = np.abs(places[:, lengths]).max(axis=1)
+        there = length <= _ARRIVED
+        arrived.append(places[there])
+        of_sizes.append(sizes[there])
+        going = ~there & (far <= 10.0 * sizes)
+        places, sizes = places[going], sizes[going]
+    places, sizes = np.concatenate([*arrived, places[:0]]), np.concatenate([*of_sizes, sizes[:0]])
+    far = np.abs(places[:, lengths]).max(axis=1, initial=0.0)
+    zero = far <= _ARRIVED * sizes
+    places[zero[:, None] & lengths] = 0.0
+    own = zero | ((far * _HALF_WAY > sizes) & (far <= sizes * _HALF_WAY))
+    own[own] &= at_rest.balanced(places[own])
+    places, sizes = places[own], sizes[own]
+    for axis in np.flatnonzero(lengths):
+        aside = np.zeros(places.shape)
+        aside[:, axis] = _ASIDE * sizes
+        rounding = at_rest.balanced(places + aside) | at_rest.balanced(places - aside)
+        places, sizes = places[~rounding], sizes[~rounding]
+    return places, sizes
+
+
+def _different(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each of these (R, n) once."""
+    found = []
     while len(places):
+        found.append(places[0])
         apart = np.abs(places - places[0]).max(axis=1)
         places = places[apart > _ONE * np.abs(places[0]).max()]
-        count += 1
-    return count
+    return np.array(found).reshape(-1, places.shape[1])
 
 
 def _are_among(places: NDArray[np.float64], others: list[Equilibrium], within: float) -> NDArray[np.bool_]:
@@ -54,68 +153,3 @@ def _are_among(places: NDArray[np.float64], others: list[Equilibrium], within: f
     for each in others:
         found |= np.abs(places - each.position).max(axis=1, initial=0.0) <= within * sizes
     return found
-
-
-def at_other_sizes(
-    system: Lagrangian | Hamiltonian,
-    is_angle: NDArray[np.bool_],
-    known: list[Equilibrium],
-    ends: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    search: Callable[[NDArray[np.float64], NDArray[np.float64]], list[Equilibrium]],
-) -> list[Equilibrium]:
-    """Equilibria that are known, and those at lengths of any other size.
-
-    `ends` gives the places (R, n) where Newton's method ends from others (S, n); `search` the equilibria from these,
-    with coordinates up to most (n).
-    """
-    lengths = distinguishing_coordinates(system) & ~is_angle
-    if not lengths.any():
-        return known
-    over_a_turn = starts_of_a_search(len(lengths))
-    some = over_a_turn[:: max(1, len(over_a_turn) // _FEW)]
-
-    def of_size(places: NDArray[np.float64], size: float) -> NDArray[np.bool_]:
-        """Those that are new, and as far off as starts of this size tell."""
-        far = np.abs(places[:, lengths]).max(axis=1, initial=0.0)
-        own: NDArray[np.bool_] = (
-            (far * _HALF_WAY > size) & (far <= size * _HALF_WAY) & ~_are_among(places, known, _SAME)
-        )
-        return own
-
-    def scaled(starts: NDArray[np.float64], size: float) -> NDArray[np.float64]:
-        return np.where(lengths, starts * (size * _HALF_WAY / np.pi), starts)
-
-    hits, crowded = [], 0
-    for size in _SIZES.tolist():
-        with np.errstate(all="ignore"):
-            places = ends(scaled(some, size))
-        places = places[of_size(places, size)]
-        count = _different(places)
-        if count > _FEW // 2:
-            # Every start comes to a place of its own, on a curve or next to each other everywhere.
-            crowded += 1
-        elif count:
-            hits.append(size)
-    if len(hits) + crowded > _MOST_SIZES:
-        return known
-    found = known
-    for size in hits:
-        try:
-            reached = search(scaled(over_a_turn, size), scaled(np.full(len(lengths), np.pi + 1e-6), size))
-        except InvalidInput:
-            # Singular there, as lengths of nothing are.
-            continue
-        at = _places(reached, len(lengths))
-        # Between two wells this small a hill is nothing but zero for a search over a turn.
-        own = of_size(at, size) | ((at == 0.0).all(axis=1) & ~_are_among(at, found, _ONE))
-        if own.sum() > _MOST:
-            return known
-        new = [each for each, is_own in zip(reached, own.tolist(), strict=True) if is_own]
-        # A search among larger places has told them less exactly.
-        again = _are_among(_places(found, len(lengths)), new, _ONE)
-        found = [each for each, told in zip(found, again.tolist(), strict=True) if not told] + new
-    return found
-
-
-def _places(equilibria: list[Equilibrium], coordinates: int) -> NDArray[np.float64]:
-    return np.array([each.position for each in equilibria]).reshape(-1, coordinates)

@@ -144,6 +144,9 @@ impl ForceTerm for CentralField {
     fn center(&self) -> Option<[f64; 3]> {
         Some(self.center)
     }
+    fn softening(&self) -> f64 {
+        if self.potential.singular() { 0.0 } else { self.potential.own_length().unwrap_or(0.0) }
+    }
     fn strongest(
         &self,
         bodies: &[(usize, f64, [f64; 3])],

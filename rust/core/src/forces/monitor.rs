@@ -36,7 +36,7 @@ pub struct InverseDistances {
     pairs: Vec<Attraction>,
     /// Whether each body is there: lanes without one are not.
     present: Vec<Lanes>,
-    centers: Vec<(f64, [f64; 3])>,
+    centers: Vec<(Attraction, [f64; 3])>,
 }
 
 impl InverseDistances {
@@ -50,7 +50,7 @@ impl InverseDistances {
             let softening = units.take(softening, [1, 0, 0]);
             softening * softening
         };
-        let (weight, pairs, mut centers): (_, Vec<Attraction>, Vec<(f64, [f64; 3])>) = match by {
+        let (weight, pairs, mut centers): (_, Vec<Attraction>, Vec<(Attraction, [f64; 3])>) = match by {
             Transformation::PotentialEnergy => {
                 let newtonian = forces.iter().filter_map(|force| force.as_newtonian());
                 let pairs = newtonian.map(|(constant, softening)| Attraction {
@@ -59,22 +59,27 @@ impl InverseDistances {
                 });
                 let coulomb = forces.iter().filter_map(|force| force.as_inverse_distance_center());
                 // An energy times a length.
-                let centers = coulomb.map(|(k, at)| (units.take(-k, [3, 1, -2]), center(at)));
+                let centers = coulomb.map(|(k, at)| {
+                    (Attraction { factor: units.take(-k, [3, 1, -2]), softening2: 0.0 }, center(at))
+                });
                 (mass.clone(), pairs.collect(), centers.collect())
             }
             Transformation::Distance => {
                 let between = forces.iter().filter(|force| force.coupling() == Coupling::AllPairs);
-                let softening = between.map(|force| force.length()).reduce(f64::min);
-                let pairs = softening.map(|length| Attraction { factor: 1.0, softening2: soft(length) });
-                let centers = forces.iter().filter_map(|force| force.center()).map(|at| (1.0, center(at)));
+                let near = |softening: f64| Attraction { factor: 1.0, softening2: soft(softening) };
+                let pairs = between.map(|force| force.softening()).reduce(f64::min).map(near);
+                let centers = forces
+                    .iter()
+                    .filter_map(|force| Some((near(force.softening()), center(force.center()?))));
                 (present.clone(), pairs.into_iter().collect(), centers.collect())
             }
         };
-        // Two fields about one point are one place to come near to.
+        // Two fields about one point are one place to come near to, as hard as the harder of them.
         if by == Transformation::Distance {
+            centers.sort_by(|(a, _), (b, _)| a.softening2.total_cmp(&b.softening2));
             let all = core::mem::take(&mut centers);
             for center in all {
-                if !centers.contains(&center) {
+                if !centers.iter().any(|(_, at)| *at == center.1) {
                     centers.push(center);
                 }
             }
@@ -111,8 +116,8 @@ impl Monitor<Lanes> for InverseDistances {
                 }
             };
         }
-        for &(factor, center) in &self.centers {
-            let around = Lanes::pass(Center { of: self, factor, center, q, gradient: &mut *gradient });
+        for &(field, center) in &self.centers {
+            let around = Lanes::pass(Center { of: self, field, center, q, gradient: &mut *gradient });
             sum += match self.arrangement {
                 Arrangement::Batched => around,
                 Arrangement::Packed => around.sum_of_lanes(),
@@ -231,7 +236,7 @@ impl Pass<Lanes> for Others<'_> {
 /// The distances of all bodies from a center.
 struct Center<'a> {
     of: &'a InverseDistances,
-    factor: f64,
+    field: Attraction,
     center: [f64; 3],
     q: &'a [Lanes],
     gradient: &'a mut [Lanes],
@@ -241,12 +246,13 @@ impl Pass<Lanes> for Center<'_> {
     type Output = Lanes;
     #[inline(always)]
     fn run<V: View<Lanes>>(self) -> Lanes {
-        let Self { of, factor, center: [x, y, z], q, gradient } = self;
+        let Self { of, field: Attraction { factor, softening2 }, center: [x, y, z], q, gradient } = self;
         let (q, gradient, present) = (V::view(q), V::view_mut(gradient), V::view(&of.present));
-        let (factor, center) = (V::splat(factor), [V::splat(x), V::splat(y), V::splat(z)]);
+        let (factor, softening2) = (V::splat(factor), V::splat(softening2));
+        let center = [V::splat(x), V::splat(y), V::splat(z)];
         let mut sum = V::zero();
         for row in 0..of.shape.rows {
-            let (d, inverse) = apart(center, place(q, row, of.shape), V::zero());
+            let (d, inverse) = apart(center, place(q, row, of.shape), softening2);
             let term = factor * present[row] * inverse;
             sum += term;
             add(gradient, row, of.shape, -(term * inverse * inverse), d);

@@ -137,6 +137,9 @@ impl ForceTerm for PairPotential {
     fn coupling(&self) -> Coupling {
         Coupling::AllPairs
     }
+    fn softening(&self) -> f64 {
+        if self.potential.singular() { 0.0 } else { self.potential.own_length().unwrap_or(0.0) }
+    }
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING
     }

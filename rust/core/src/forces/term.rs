@@ -251,6 +251,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn length(&self) -> f64 {
         0.0
     }
+    /// A length below which it grows no more, or zero: by it distances are softened that a time transformation watches.
+    fn softening(&self) -> f64 {
+        self.length()
+    }
     /// The unit of time that goes with units of length and mass, all as exponents of two, if the force has one.
     fn unit_of_time(&self, _length: i32, _mass: i32) -> Option<i32> {
         None

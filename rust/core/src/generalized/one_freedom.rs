@@ -33,6 +33,10 @@ const REPEATS: f64 = 1e-9;
 const UNKNOWN: f64 = 1e-6;
 /// How a slope changes at a turning point is told by one this part of a panel beside it.
 const BESIDE: f64 = 1e-3;
+/// Two periods that differ by no more than so many times what is unknown of one are the same.
+const AGREES: f64 = 64.0;
+/// Places between two that are a whole number of parts of a way off are this part of one further.
+const SOMEWHERE: f64 = 0.618_034;
 /// Where less than this part of the greatest kinetic energy is left, it is counted from the turning point.
 const NEAR_AN_END: f64 = 0.25;
 
@@ -48,6 +52,20 @@ pub struct OneFreedom {
     at_rest: f64,
     start: f64,
     t: f64,
+}
+
+/// Refuses a motion whose last digits change its period by more than is told.
+fn refuse_if_unknown(end: f64, of: &str, unknown: f64) -> Result<()> {
+    if unknown > UNKNOWN {
+        return Err(Error::invalid(
+            "position",
+            format!(
+                "the motion comes so near to standing still, at {end}, that the last digit of its {of} changes its \
+                 period by a part of {unknown:.0e}: it is on a separatrix, but for rounding"
+            ),
+        ));
+    }
+    Ok(())
 }
 
 /// An oscillation.
@@ -175,8 +193,47 @@ impl OneFreedom {
         }
         let pieces = self.pieces_of_a_swing(&panels, start);
         let [time, action] = quadrature::integral(self, &pieces)?;
-        self.refuse_near_a_separatrix(&panels, start, 2.0 * time)?;
+        let (end, unknown) = self.unknown_beside_the_top(&panels, start, 2.0 * time);
+        if let Some(even) = self.even_oscillation()?
+            && (even.period - 2.0 * time).abs() <= AGREES * unknown.max(f64::EPSILON) * even.period
+        {
+            return Ok(even);
+        }
+        refuse_if_unknown(end, "energy", unknown)?;
         Ok(Oscillation { turning: (low, high), period: 2.0 * time, action: action / PI })
+    }
+
+    /// The oscillation of what starts at rest where all seems to be even: it turns back at the opposite place then, whatever
+    /// digits the energy has, and a quarter of it tells the rest. None where it is not so.
+    ///
+    /// # Errors
+    /// A place where the slope is no number; a motion that hardly leaves its start.
+    fn even_oscillation(&mut self) -> Result<Option<Oscillation>> {
+        let far = self.start.abs();
+        if self.kinetic != 0.0 || !self.is_even() {
+            return Ok(None);
+        }
+        let way = way::outward(self, -self.start.signum(), Some(far))?;
+        let Some((first, others)) = way.panels.split_first().filter(|_| !way.turns) else { return Ok(None) };
+        let known = way::energies(&way.panels, 0, (0.0, 0.0));
+        let inner = others.iter().zip(&known[1..]).zip(&known[2..]);
+        let inner = inner.map(|((panel, &from), &to)| Piece::inner(panel, &[from, to]));
+        let pieces: Vec<Piece> =
+            core::iter::once(Piece::at_an_end(first.from, first.to)).chain(inner).collect();
+        let [time, action] = quadrature::integral(self, &pieces)?;
+        let period = 4.0 * time;
+        // Places beside the start are as far from the top as their last digits tell.
+        let [mass, slope, change] = self.mass_and_slopes(self.start, first.to);
+        let unknown = f64::EPSILON * far * (change * mass).sqrt() / (slope * period);
+        refuse_if_unknown(self.start, "place", unknown)?;
+        Ok(Some(Oscillation { turning: (-far, far), period, action: 2.0 * action / PI }))
+    }
+
+    /// Whether energy and mass are the same numbers at opposite places up to the start, and slopes opposite ones.
+    fn is_even(&mut self) -> bool {
+        let places = core::array::from_fn(|k| self.start * (k as f64 + SOMEWHERE) / WIDTH as f64);
+        let (here, there) = (self.values(places), self.values(places.map(|place| -place)));
+        here[0] == there[0] && here[1] == there[1] && here[2] == there[2].map(|slope| -slope)
     }
 
     /// Of panels from one turning point to the other, with the start after so many of them: near a turning point the energy
@@ -200,11 +257,12 @@ impl OneFreedom {
         panels.iter().enumerate().map(piece).collect()
     }
 
-    /// Refuses a motion that turns back so near to where it would stand still that the rounding of its energy changes the time
-    /// that it takes there. With a slope s that changes by k along the way, the time goes as ln(s) √(m/k), and s as the root
+    /// By what part of itself the rounding of the energy changes the period of a motion that turns back near to where it would
+    /// stand still, and where. With a slope s that changes by k along the way, the time goes as ln(s) √(m/k), and s as the root
     /// of the energy that is left to the top.
-    fn refuse_near_a_separatrix(&mut self, panels: &[Panel], start: usize, period: f64) -> Result<()> {
-        let [Some(first), Some(last)] = [panels.first(), panels.last()] else { return Ok(()) };
+    fn unknown_beside_the_top(&mut self, panels: &[Panel], start: usize, period: f64) -> (f64, f64) {
+        let mut worst = (self.start, 0.0);
+        let [Some(first), Some(last)] = [panels.first(), panels.last()] else { return worst };
         let known = way::energies(panels, start, (self.kinetic, self.kinetic));
         let ends = [(first.from, first.to, known[0].1), (last.to, last.from, known[panels.len()].1)];
         for (end, inward, of) in ends {
@@ -212,22 +270,21 @@ impl OneFreedom {
             if end == self.start {
                 continue;
             }
-            let beside = end + BESIDE * (inward - end);
-            let [_, mass, slope] = self.values(core::array::from_fn(|k| if k == 0 { end } else { beside }));
-            let change = ((slope[1] - slope[0]) / (beside - end)).abs();
+            let [mass, slope, change] = self.mass_and_slopes(end, inward);
             let rounding = f64::EPSILON * of;
-            let unknown = rounding * (change * mass[0]).sqrt() / (slope[0] * slope[0] * period);
-            if unknown > UNKNOWN {
-                return Err(Error::invalid(
-                    "position",
-                    format!(
-                        "the motion comes so near to standing still, at {end}, that the last digit of its energy \
-                         changes its period by a part of {unknown:.0e}: it is on a separatrix, but for rounding"
-                    ),
-                ));
+            let unknown = rounding * (change * mass).sqrt() / (slope * slope * period);
+            if unknown > worst.1 {
+                worst = (end, unknown);
             }
         }
-        Ok(())
+        worst
+    }
+
+    /// The mass at a turning point, the slope, and how that changes towards the inside, without their signs.
+    fn mass_and_slopes(&mut self, end: f64, inward: f64) -> [f64; 3] {
+        let beside = end + BESIDE * (inward - end);
+        let [_, mass, slope] = self.values(core::array::from_fn(|k| if k == 0 { end } else { beside }));
+        [mass[0], slope[0].abs(), ((slope[1] - slope[0]) / (beside - end)).abs()]
     }
 
     /// The time in which the coordinate goes on by `turn`, and ∫ p dq / 2π over it, of a motion that never turns back.

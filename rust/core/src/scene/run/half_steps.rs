@@ -1,4 +1,4 @@
-//! What steps of half the length make of the energy at the end, where forces may give and take any, or take some: no law
+//! What steps of half or twice the length make of the energy at the end, where forces may give and take any, or take some: no law
 //! tells then whether a run was thrown off course, but the method does.
 //!
 //! Looked at where the energy has changed as it does where bodies meet between two steps, and where running once more costs
@@ -26,27 +26,28 @@ pub(super) fn pays(part: &Part<'_>, evaluations: u64) -> bool {
     plainly && plan.dt.is_some() && evaluations.saturating_mul(each) <= MOMENT
 }
 
-/// Kinetic and potential energy where half the steps lead; none if they lead nowhere.
+/// Kinetic and potential energy where steps so many times as long lead; none if they lead nowhere.
 ///
 /// # Errors
 /// None but those of the library itself.
 pub(super) fn energy_at_end(
     part: &Part<'_>,
     request: &Request,
+    times_as_long: f64,
     ticker: &mut Ticker<'_>,
 ) -> Result<Option<Scaled>> {
     let scene = part.scene;
     let times = [request.times[request.times.len() - 1]];
-    let halved = Request {
+    let other = Request {
         times: times.to_vec(),
         method: part.plan.method.name.to_owned(),
-        dt: part.plan.dt.map(|dt| 0.5 * dt.abs()),
+        dt: part.plan.dt.map(|dt| times_as_long * dt.abs()),
         events: Vec::new(),
         record: Vec::new(),
         max_steps: None,
         ..request.clone()
     };
-    let plan = Plan::new(scene, &halved, ticker)?;
+    let plan = Plan::new(scene, &other, ticker)?;
     let nothing =
         Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false, rigid: 0 };
     let mut columns = Columns::new(scene.copies, 1, scene.particles, &nothing)?;
@@ -55,10 +56,10 @@ pub(super) fn energy_at_end(
         scene,
         plan: &plan,
         times: &times,
-        rtol: plan.rtol(&halved),
-        asked_rtol: halved.rtol,
-        atol: halved.atol.as_ref(),
-        max_step: plan.max_step(&halved),
+        rtol: plan.rtol(&other),
+        asked_rtol: other.rtol,
+        atol: other.atol.as_ref(),
+        max_step: plan.max_step(&other),
         first_step: f64::MAX,
         max_steps: u64::MAX,
         watches: false,
