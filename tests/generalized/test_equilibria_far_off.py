@@ -181,3 +181,26 @@ def test_a_pendulum_on_a_circle_of_any_size(length: float) -> None:
     system = vv.Lagrangian(kinetic - 9.8 * y, [x, y], constraints=[x**2 + y**2 - length**2])
     np.testing.assert_allclose(places(system), [[0.0, -length], [0.0, length]], rtol=1e-13, atol=1e-13 * length)
     assert [found.stable for found in system.equilibria()] == [True, False]
+
+
+@pytest.mark.parametrize("size", [30.0, 100.0, 1e4, 1e8])
+def test_a_hill_whose_zero_is_made_by_rounding_is_told_once(size: float) -> None:
+    """Multiplied out, the hill is at what rounding leaves of size⁴ − size⁴: a 1e-16th of the size, and one place."""
+    for potential in ((x - size) ** 2 * (x + size) ** 2 / 2, (x / size - 1) ** 2 * (x / size + 1) ** 2):
+        for system in both(potential, x):
+            np.testing.assert_allclose(places(system), [[-size], [0.0], [size]], rtol=1e-12, atol=1e-14 * size)
+    for system in both((x - size) * (x + size) * x, x):
+        np.testing.assert_allclose(places(system), [[-size / np.sqrt(3)], [size / np.sqrt(3)]], rtol=1e-12, atol=0)
+
+
+def test_ions_in_a_trap() -> None:
+    """On a line, in any order: of three the outer ones at (5/4)^(1/3), and the middle one at rest between."""
+    q, p = sp.symbols("q0:3"), sp.symbols("p0:3")
+    repulsion = sum(1 / sp.sqrt((q[i] - q[j]) ** 2) for i in range(3) for j in range(i))
+    trap = sum(each**2 for each in q) / 2
+    found = vv.Hamiltonian(sum(each**2 for each in p) / 2 + trap + repulsion, q=list(q), p=list(p)).equilibria()
+    outer = 1.25 ** (1 / 3)
+    assert len(found) == 6
+    for each in found:
+        np.testing.assert_allclose(np.sort(each.position), [-outer, 0.0, outer], rtol=1e-10, atol=1e-10)
+        assert each.stable

@@ -76,7 +76,7 @@ def test_drag_that_takes_most_of_the_energy_is_not_blamed(tau: float) -> None:
 
 
 def test_few_passages_go_unnoticed() -> None:
-    """Of random pairs whose energy at the end is off by a twentieth; a sixth of them were silent under drag."""
+    """Of random pairs whose energy at the end is off by a tenth; a sixth of them were silent under drag."""
     missed, off = 0, 0
     for seed in range(400):
         random = np.random.default_rng(seed)
@@ -91,7 +91,7 @@ def test_few_passages_go_unnoticed() -> None:
         except vv.Error:
             continue
         size = fine.kinetic_energy[-1] + abs(fine.potential_energy[-1])
-        if abs(coarse.energy[-1] - fine.energy[-1]) > 0.05 * size:
+        if abs(coarse.energy[-1] - fine.energy[-1]) > 0.1 * size:
             off += 1
             missed += not caught
     assert off > 50

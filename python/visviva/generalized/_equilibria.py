@@ -108,11 +108,14 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     found = _found(system, starts, within(first, is_angle))
 
     energy = at_rest(system, Sizes(system))
-    asked = AtRest(
-        lambda places: matrices_along(system, places),
-        lambda places: round_off(energy, places, np.abs(places).max(axis=1, keepdims=True)).all(axis=1),
-        lambda places: equilibria(system, places),
-    )
+
+    def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        small = round_off(energy, places, np.abs(places).max(axis=1, keepdims=True))
+        rounding = np.zeros(len(places), dtype=bool)
+        rounding[:] = small.all(axis=1)
+        return rounding
+
+    asked = AtRest(lambda places: matrices_along(system, places), balanced, lambda places: equilibria(system, places))
     found = with_other_sizes(system, asked, is_angle, found)
     return sorted(found, key=lambda each: tuple(each.position))
 

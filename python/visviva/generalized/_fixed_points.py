@@ -53,6 +53,7 @@ _MADE_OF_THEM = 0.1
 _STEPS_TO_REST = 4
 #: Forces lead no further from where they vanish than this part of what is looked at.
 _SETTLED = 1e-5
+_STEPS_ALONG_A_VALLEY = 12
 #: States are found to this part of their sizes.
 _FOUND = SAME
 
@@ -75,7 +76,7 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
         return by_sizes(system, states, sizes, lambda group: _found(system, group, None))
     first = place_at_start(system)
     at_rest, _ = _at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
-    moved = np.concatenate([turned(first), np.zeros((2 * n, n))], axis=1)
+    moved = np.concatenate([turned(first), np.zeros((3 * n, n))], axis=1)
     is_angle = angles(*_forces(system, moved))
     found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
 
@@ -84,7 +85,8 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
         states, known = _at_rest(system, places)
         rounding = np.ones(len(places), dtype=bool)
-        rounding[known] = round_off(energy, states, np.abs(states).max(axis=1, keepdims=True)).all(axis=1)
+        small = round_off(energy, states, np.abs(states).max(axis=1, keepdims=True))
+        rounding[known] = small.all(axis=1)
         return rounding
 
     asked = AtRest(
@@ -131,19 +133,35 @@ def _forces_at_rest(
     return forces, stiffness
 
 
-def _stay(system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether forces at rest lead no further from states (S, 2n), by what is known there and nowhere else.
+def _at_zeros_of_forces(
+    system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """States (S, 2n) at which forces at rest lead no further, by what is known there and nowhere else.
 
     What rates are made of at other starts may be so much more that along a valley all of these seem to be round-off.
+    Those go on to where it ends.
     """
     n = states.shape[1] // 2
-    forces, stiffness = _forces_at_rest(system, states[:, :n])
+    there = [states[:0]]
+    for count in range(_STEPS_ALONG_A_VALLEY):
+        step = _step_at_rest(system, states[:, :n])
+        # A zero of higher order is come to slowly.
+        enough = _SETTLED if count + 1 == _STEPS_ALONG_A_VALLEY else SAME
+        stays = (np.abs(step) <= enough * looked_at[:n]).all(axis=1)
+        there.append(states[stays])
+        length = np.abs(step[~stays] / looked_at[:n]).max(axis=1, initial=1.0, keepdims=True)
+        states, _ = _at_rest(system, states[~stays, :n] + step[~stays] / length)
+    return np.concatenate(there)
+
+
+def _step_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Newton's step (S, n) to where forces at rest vanish; none where they have no derivatives, or none but zero."""
+    forces, stiffness = _forces_at_rest(system, places)
     rows = np.abs(stiffness).max(axis=2)
     judged = np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
     step = np.zeros(forces.shape)
     step[judged] = solved(stiffness[judged] / rows[judged][..., None], forces[judged] / rows[judged])
-    stays: NDArray[np.bool_] = (np.abs(step) <= _SETTLED * looked_at[:n]).all(axis=1)
-    return stays
+    return step
 
 
 def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
@@ -158,7 +176,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
         states = np.concatenate([states, reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.concatenate([distinguishing_coordinates(system), np.ones(n, dtype=bool)])
     if most is not None:
-        states = states[_stay(system, states, looked_at)]
+        states = _at_zeros_of_forces(system, states, np.where(looked_at > 0.0, looked_at, 1.0))
         if distinguishing[:n].any() and not is_free(_forces(system, starts)):
             states = states[where_something_acts(lambda at: _forces(system, at), states, n)]
         # All places along a cyclic coordinate are alike, and angles beyond a turn are the same.

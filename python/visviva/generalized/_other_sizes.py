@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from visviva.errors import InvalidInput
 from visviva.generalized._newton import solved
 from visviva.generalized._searches import distinguishing_coordinates, starts_of_a_search
 
@@ -84,9 +85,16 @@ def with_other_sizes(
     if not hits or len(hits) + crowded > _MOST_SIZES:
         return known
     places = np.concatenate(found_from(over_a_turn, np.array(hits)))
+    # What is zero for a search among large places may be known better.
+    near_zero = any(np.abs(each.position[lengths]).max() <= _ARRIVED * max(hits) for each in known)
+    places = places[places[:, lengths].any(axis=1) | (not near_zero)]
     if len(places) > _MOST:
         return known
-    found = at_rest.near(places)
+    try:
+        found = at_rest.near(places)
+    except InvalidInput:
+        # What is told of places is told of none of these.
+        return known
     # A search among larger places has told them less exactly.
     again = _are_among(np.array([each.position for each in known]).reshape(-1, len(lengths)), found, _ONE)
     return found + [each for each, told in zip(known, again.tolist(), strict=True) if not told]

@@ -52,6 +52,8 @@ _LOST = 1e-14
 _A_TURN = np.pi + 1e-6
 #: What differs by less than this part after a turn is the same.
 _REPEATS = 1e-9
+#: Turns after which an angle is the same; of a length a slope may be nothing in one of them.
+_TURNS = (0.0, 1.0, 1e5)
 #: How far off equilibria are told of coordinates that are no angles, in units of where the system starts.
 _AS_FAR = 4.0
 
@@ -63,18 +65,19 @@ def place_at_start(system: Lagrangian | Hamiltonian) -> NDArray[np.float64]:
 
 
 def turned(start: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give places (2n, n): for each coordinate one, where it is within a turn, and then those a turn of it on."""
+    """Give places (3n, n): for each coordinate one, where it is within a turn, and then those some turns of it on."""
     # A turn is nothing beside a length that is large.
     within = np.where(np.eye(len(start), dtype=bool), np.remainder(start, 2.0 * np.pi), start)
-    return np.vstack([within, within + 2.0 * np.pi * np.eye(len(start))])
+    return np.vstack([within + 2.0 * np.pi * turns * np.eye(len(start)) for turns in _TURNS])
 
 
 def angles(forces: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which coordinates (n) are angles: forces and their slopes at the places of `turned` are the same after a turn."""
+    """Which coordinates (n) are angles: forces and their slopes at the places of `turned` are the same after turns."""
     rows = np.concatenate([forces, 2.0 * np.pi * slopes.reshape(len(slopes), -1)], axis=1)
-    before, after = np.split(rows, 2)
+    before, *after = np.split(rows, len(_TURNS))
     with np.errstate(all="ignore"):
-        same: NDArray[np.bool_] = np.abs(after - before).max(axis=1) <= _REPEATS * np.abs(before).max(axis=1)
+        change = np.abs(np.stack(after) - before).max(axis=(0, 2))
+        same: NDArray[np.bool_] = change <= _REPEATS * np.abs(before).max(axis=1)
     return same
 
 

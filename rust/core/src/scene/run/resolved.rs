@@ -39,6 +39,8 @@ const ROUNDINGS: f64 = 8.0;
 const ALL_THERE_WAS: f64 = 1.0;
 /// … where bodies may come close to each other, or to a center, a passage between two steps changes it by this part or more.
 const BY_A_PASSAGE: f64 = 0.01;
+/// By so much other steps may change what is left of it.
+const BY_CHAOS: f64 = 0.05;
 
 /// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
 const FASTER: f64 = 3.0;
@@ -121,8 +123,9 @@ pub(super) fn look(
                     };
                     let off = other.map(|other| other.plus(kinetic_end.plus(potential_end).times(-1.0)));
                     let error = off.map(|off| off.over(size).to_f64().abs());
-                    outcome.energy_error = error.unwrap_or(0.0);
-                    if error.is_some_and(|error| error <= WORTH_A_LOOK) {
+                    // What is chaotic comes to other energies, too, and no shorter steps would help it.
+                    outcome.energy_error = error.filter(|&error| error > BY_CHAOS).unwrap_or(0.0);
+                    if error.is_some_and(|error| error <= BY_CHAOS) {
                         break;
                     }
                 }
