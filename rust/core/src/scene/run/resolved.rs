@@ -40,7 +40,7 @@ const ALL_THERE_WAS: f64 = 1.0;
 /// … where bodies may come close to each other, or to a center, a passage between two steps changes it by this part or more.
 const BY_A_PASSAGE: f64 = 0.01;
 /// By so much other steps may change what is left of it.
-const BY_CHAOS: f64 = 0.05;
+const BY_CHAOS: f64 = 0.02;
 
 /// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
 const FASTER: f64 = 3.0;
