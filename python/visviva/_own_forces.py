@@ -112,7 +112,7 @@ def _values_by_copy(name: str, given: Any) -> Sequence[Any]:
 def _bodies_by_copy(name: str, given: Any) -> Sequence[Any]:
     """The bodies of each copy, by their indices or their names."""
     bodies = given.tolist() if isinstance(given, np.ndarray) else given
-    if not isinstance(bodies, list | tuple) or not bodies:
+    if not isinstance(bodies, list | tuple | range) or not bodies:
         raise _without_axis(name, given)
     return bodies
 

@@ -153,9 +153,10 @@ class Runnable(Shown, ABC, Generic[_Result]):
         -----
         visviva.AccuracyWarning
             Fixed steps, beside rigid bodies, too, resolved nothing: the energy at the end is off by more than a
-            hundredth of kinetic + |potential|, an orbit or a charge in a magnetic field turns in fewer than six steps,
-            a step and two of half its length lead to other velocities, or the step is longer than the run. Steps that
-            follow `rtol` (and no `atol`): that energy is off by more than 1e4 times it.
+            hundredth of kinetic + |potential| (a fiftieth where forces take or give energy and half the steps tell), an
+            orbit or a charge in a magnetic field turns in fewer than six steps, a step and two of half its length lead
+            to other velocities, or the step is longer than the run. Steps that follow `rtol` (and no `atol`): that
+            energy is off by more than 1e4 times it.
 
         References
         ----------

@@ -204,3 +204,60 @@ def test_ions_in_a_trap() -> None:
     for each in found:
         np.testing.assert_allclose(np.sort(each.position), [-outer, 0.0, outer], rtol=1e-10, atol=1e-10)
         assert each.stable
+
+
+def test_beside_a_coordinate_that_nothing_depends_on() -> None:
+    for system in both((x**2 - 100) ** 2, x, y):
+        assert places(system) == [
+            [pytest.approx(-10.0, rel=1e-13), 0.0],
+            [0.0, 0.0],
+            [pytest.approx(10.0, rel=1e-13), 0.0],
+        ]
+
+
+@pytest.mark.parametrize(("first", "second"), [(1e-8, 1.0), (1e4, 1e-4), (1e-3, 1e6)])
+def test_lengths_of_different_sizes_in_one_place(first: float, second: float) -> None:
+    """Each of nine places, by the size of each coordinate: two wells beside two others."""
+    wells = (x**2 / first**2 - 1) ** 2 + (y**2 / second**2 - 1) ** 2
+    wanted = sorted([a, b] for a in (-first, 0.0, first) for b in (-second, 0.0, second))
+    for system in both(wells, x, y):
+        found = np.array([each.position for each in system.equilibria()]) / [first, second]
+        in_order = found[np.lexsort(found.round(6).T[::-1])]
+        if len(found) == 9:
+            np.testing.assert_allclose(in_order, np.array(wanted) / [first, second], rtol=1e-11, atol=1e-11)
+        else:
+            # A search that misses some tells none twice, and none that is not there.
+            assert len(np.unique(found.round(6), axis=0)) == len(found)
+            np.testing.assert_allclose(found, found.round(), rtol=0, atol=1e-9)
+
+
+def test_a_small_length_beside_an_angle() -> None:
+    """Wells 1e-8 to either side, and a pendulum: nine places."""
+    for system in both((x**2 * 1e16 - 1) ** 2 - sp.cos(y), x, y):
+        found = np.array(places(system)) / [1e-8, np.pi]
+        assert found.shape == (9, 2)
+        np.testing.assert_allclose(found, found.round(), rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("k", [1, 3, 8, 60])
+def test_angles_of_many_periods_are_angles(k: int) -> None:
+    """Within a turn, whatever their start is: 2k + 1 places of cos kθ."""
+    for start in (1.0, 50.0):
+        system = vv.Lagrangian(x.diff(vv.time) ** 2 / 2 + sp.cos(k * x), [x], position=[start], velocity=[0.0])
+        found = np.array(places(system))[:, 0]
+        assert np.abs(found).max() <= np.pi + 1e-9
+        np.testing.assert_allclose(found, np.arange(-k, k + 1) * np.pi / k, rtol=1e-11, atol=1e-11)
+
+
+def test_beside_the_edge_of_a_domain() -> None:
+    for system in both((x - 20) ** 2 + sp.sqrt(sp.Float(20.05) - x) / 1000, x):
+        ((found,),) = places(system)
+        assert 2 * (found - 20) == pytest.approx(1 / (2000 * np.sqrt(20.05 - found)), rel=1e-9, abs=0)
+
+
+def test_hamiltonians_that_rest_with_momenta_of_their_own() -> None:
+    """Where ∂H/∂p vanishes at p = ±1, beside p = 0: each with its own place."""
+    q, p = sp.symbols("q p")
+    function = (p**2 - 1) ** 2 * (1 + q**2) / 4 + (q - 1) ** 2
+    found = sorted([*each.position, *each.momentum] for each in vv.Hamiltonian(function, q=[q], p=[p]).equilibria())
+    np.testing.assert_allclose(found, [[0.8, 0.0], [1.0, -1.0], [1.0, 1.0]], rtol=1e-10, atol=1e-10)

@@ -14,11 +14,12 @@ from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
 from visviva.generalized._equilibria import Equilibrium
+from visviva.generalized._hamiltonian_at_rest import at_zeros_of_forces, forces_at_rest, states_at_rest
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
 from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
 from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
-from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of, solved
+from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._probe import terms_of
 from visviva.generalized._searches import (
@@ -49,11 +50,6 @@ _FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 _ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
 _MADE_OF_THEM = 0.1
-#: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
-_STEPS_TO_REST = 4
-#: Forces lead no further from where they vanish than this part of what is looked at.
-_SETTLED = 1e-5
-_STEPS_ALONG_A_VALLEY = 12
 #: States are found to this part of their sizes.
 _FOUND = SAME
 
@@ -75,7 +71,7 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
         sizes = np.abs(states[:, :n]).max(axis=1, initial=0.0)
         return by_sizes(system, states, sizes, lambda group: _found(system, group, None))
     first = place_at_start(system)
-    at_rest, _ = _at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
+    at_rest, _ = states_at_rest(system, np.concatenate([starts_of_a_search(n), first[None]]))
     moved = np.concatenate([turned(first), np.zeros((3 * n, n))], axis=1)
     is_angle = angles(*_forces(system, moved))
     found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
@@ -83,85 +79,19 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     energy = _energy(system)
 
     def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
-        states, known = _at_rest(system, places)
-        rounding = np.ones(len(places), dtype=bool)
+        states, known = states_at_rest(system, places)
+        rounding = np.zeros(len(places), dtype=bool)
         small = round_off(energy, states, np.abs(states).max(axis=1, keepdims=True))
         rounding[known] = small.all(axis=1)
         return rounding
 
     asked = AtRest(
-        lambda places: _forces_at_rest(system, places),
+        lambda places: forces_at_rest(system, places),
         balanced,
-        lambda places: fixed_points(system, _at_rest(system, places)[0]),
+        lambda places: fixed_points(system, states_at_rest(system, places)[0]),
     )
     found = with_other_sizes(system, asked, is_angle, found)
     return sorted(found, key=lambda each: (*each.position, *each.momentum))
-
-
-def _at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like.
-
-    And at which of the places: those where rates are numbers.
-    """
-    n = places.shape[1]
-    states, index = np.concatenate([places, np.zeros_like(places)], axis=1), np.arange(len(places))
-    for _ in range(_STEPS_TO_REST):
-        rates, slopes = rates_and_slopes(system, states)
-        known = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
-        states, rates, slopes, index = states[known], rates[known], slopes[known], index[known]
-        if not rates[:, :n].any():
-            break
-        inverse = np.linalg.pinv(slopes[:, :n, n:], rcond=_FOUND)
-        states[:, n:] -= np.einsum("sij,sj->si", inverse, rates[:, :n])
-        if not (np.abs(rates[:, :n]) > _FOUND * np.abs(slopes[:, :n, n:]).max(initial=0.0)).any():
-            break
-    return states, index
-
-
-def _forces_at_rest(
-    system: Hamiltonian, places: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Forces (S, n) at places at rest, and minus their derivatives (S, n, n) where momenta stay those of rest."""
-    n = places.shape[1]
-    states, known = _at_rest(system, places)
-    forces, stiffness = np.full(places.shape, np.nan), np.full((*places.shape, n), np.nan)
-    rates, slopes = rates_and_slopes(system, states)
-    softer = -slopes[:, n:, :n]
-    if slopes[:, :n, :n].any():
-        softer += slopes[:, n:, n:] @ np.linalg.pinv(slopes[:, :n, n:], rcond=_FOUND) @ slopes[:, :n, :n]
-    forces[known], stiffness[known] = rates[:, n:], softer
-    return forces, stiffness
-
-
-def _at_zeros_of_forces(
-    system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """States (S, 2n) at which forces at rest lead no further, by what is known there and nowhere else.
-
-    What rates are made of at other starts may be so much more that along a valley all of these seem to be round-off.
-    Those go on to where it ends.
-    """
-    n = states.shape[1] // 2
-    there = [states[:0]]
-    for count in range(_STEPS_ALONG_A_VALLEY):
-        step = _step_at_rest(system, states[:, :n])
-        # A zero of higher order is come to slowly.
-        enough = _SETTLED if count + 1 == _STEPS_ALONG_A_VALLEY else SAME
-        stays = (np.abs(step) <= enough * looked_at[:n]).all(axis=1)
-        there.append(states[stays])
-        length = np.abs(step[~stays] / looked_at[:n]).max(axis=1, initial=1.0, keepdims=True)
-        states, _ = _at_rest(system, states[~stays, :n] + step[~stays] / length)
-    return np.concatenate(there)
-
-
-def _step_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Newton's step (S, n) to where forces at rest vanish; none where they have no derivatives, or none but zero."""
-    forces, stiffness = _forces_at_rest(system, places)
-    rows = np.abs(stiffness).max(axis=2)
-    judged = np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
-    step = np.zeros(forces.shape)
-    step[judged] = solved(stiffness[judged] / rows[judged][..., None], forces[judged] / rows[judged])
-    return step
 
 
 def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
@@ -176,7 +106,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
         states = np.concatenate([states, reached(system, starts[without], scales, descending=True)[0]])
     distinguishing = np.concatenate([distinguishing_coordinates(system), np.ones(n, dtype=bool)])
     if most is not None:
-        states = _at_zeros_of_forces(system, states, np.where(looked_at > 0.0, looked_at, 1.0))
+        states = at_zeros_of_forces(system, states, np.where(looked_at > 0.0, looked_at, 1.0))
         if distinguishing[:n].any() and not is_free(_forces(system, starts)):
             states = states[where_something_acts(lambda at: _forces(system, at), states, n)]
         # All places along a cyclic coordinate are alike, and angles beyond a turn are the same.

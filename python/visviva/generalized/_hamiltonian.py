@@ -166,8 +166,9 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         Parameters
         ----------
         near : array_like, shape (S, 2n), optional
-            States (coordinates, then momenta) where Newton's method starts; if not given a grid over −π … π of at most
-            2000 of them, and as many without momenta, which may miss some.
+            States (coordinates, then momenta) where Newton's method starts. If not given, a grid over −π … π of some
+            thousand of them, and as many without momenta; for coordinates that are lengths places of other sizes, too,
+            as of a Lagrangian. It may miss some.
 
         Returns
         -------

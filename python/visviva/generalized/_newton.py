@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["Scales", "rates_and_slopes", "reached", "scales_of", "solved"]
+__all__ = ["Scales", "rates_and_slopes", "reached", "scales_of", "steps_to_zeros"]
 
 #: Newton's steps: enough for the linear way to a zero of the twelfth order, by a twelfth each time, to `SAME`.
 _STEPS = 240
@@ -95,7 +95,7 @@ def reached(
         with np.errstate(over="ignore"):
             # A step without end is not a number further on.
             wanted = rates / most[..., 0]
-        step = -solved(slopes / most, wanted) * scales.units
+        step = -_solved(slopes / most, wanted) * scales.units
         length = np.abs(step / alike).max(axis=1, keepdims=True)
         # Linear rates lead however far.
         linear = (np.abs(step - left) <= _LINEAR * np.abs(moved) + SAME * scales.sizes).all(axis=1, keepdims=True)
@@ -120,7 +120,7 @@ def reached(
     return np.concatenate([states[kept], *at_kinks]), np.concatenate([begun[kept], *from_there])
 
 
-def solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
     """Least solutions (S, m) of linear equations: by singular values only of those matrices that may be singular."""
     solved: NDArray[np.float64] = np.empty(wanted.shape)
     with np.errstate(all="ignore"):
@@ -132,6 +132,18 @@ def solved(slopes: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[
     by_values = np.linalg.pinv(slopes[~regular], rcond=_SINGULAR)
     solved[~regular] = np.einsum("sij,sj->si", by_values, wanted[~regular])
     return solved
+
+
+def steps_to_zeros(forces: NDArray[np.float64], stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Newton's steps (S, n) to where forces (S, n) vanish, by minus their derivatives (S, n, n).
+
+    Not numbers where these are none, or nothing changes a force.
+    """
+    rows = np.abs(stiffness).max(axis=2)
+    judged = np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
+    steps = np.full(forces.shape, np.nan)
+    steps[judged] = _solved(stiffness[judged] / rows[judged][..., None], forces[judged] / rows[judged])
+    return steps
 
 
 def _inverses(slopes: NDArray[np.float64]) -> NDArray[np.float64]:

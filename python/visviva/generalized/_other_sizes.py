@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from visviva.errors import InvalidInput
-from visviva.generalized._newton import solved
+from visviva.generalized._newton import steps_to_zeros
 from visviva.generalized._searches import distinguishing_coordinates, starts_of_a_search
 
 if TYPE_CHECKING:
@@ -41,13 +41,15 @@ _ASIDE = 1e-2
 #: Places are one that differ by less than this part of their sizes, and known exactly if by less than that.
 _ONE = 1e-6
 _KNOWN = 1e-12
+#: Coordinates that are this part of others may be what rounding has left of 0.
+_ROUNDED = 1e-14
 
 
 class AtRest(NamedTuple):
     """What is asked of a system at rest.
 
-    Forces (S, n) and minus their derivatives (S, n, n) at places (S, n); at which places (S) all forces are round-off;
-    and the equilibria that are reached from places.
+    Forces (S, n) and minus their derivatives (S, n, n) at places (S, n); at which places (S) all forces are round-off,
+    not where they are no numbers; and the equilibria that are reached from places.
     """
 
     forces: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
@@ -59,7 +61,8 @@ def with_other_sizes(
     system: Lagrangian | Hamiltonian, at_rest: AtRest, is_angle: NDArray[np.bool_], known: list[Equilibrium]
 ) -> list[Equilibrium]:
     """Equilibria that are known, and those at lengths of any other size."""
-    lengths = distinguishing_coordinates(system) & ~is_angle
+    distinguishing = distinguishing_coordinates(system)
+    lengths = distinguishing & ~is_angle
     if not lengths.any():
         return known
     over_a_turn = starts_of_a_search(len(lengths))
@@ -67,10 +70,11 @@ def with_other_sizes(
 
     def found_from(starts: NDArray[np.float64], sizes: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """Places (R, n) where forces vanish, of each size, from starts that are scaled to it."""
-        every = np.repeat(sizes, len(starts))
-        tall = np.where(lengths, np.tile(starts, (len(sizes), 1)) * (every * _HALF_WAY / np.pi)[:, None], 0.0)
-        tall += np.where(lengths, 0.0, np.tile(starts, (len(sizes), 1)))
-        places, every = _arrived(at_rest, tall, every, lengths)
+        every, tiled = np.repeat(sizes, len(starts)), np.tile(starts, (len(sizes), 1))
+        scaled = np.where(lengths, tiled * (every * _HALF_WAY / np.pi)[:, None], tiled)
+        # All places along a coordinate that nothing depends on are alike.
+        scaled[:, ~distinguishing] = 0.0
+        places, every = _arrived(at_rest, scaled, every, (lengths, distinguishing))
         return [_different(places[every == size]) for size in sizes.tolist()]
 
     hits, crowded = [], 0
@@ -101,25 +105,27 @@ def with_other_sizes(
 
 
 def _arrived(
-    at_rest: AtRest, places: NDArray[np.float64], sizes: NDArray[np.float64], lengths: NDArray[np.bool_]
+    at_rest: AtRest,
+    places: NDArray[np.float64],
+    sizes: NDArray[np.float64],
+    which: tuple[NDArray[np.bool_], NDArray[np.bool_]],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Where Newton's method comes to from places (S, n) of sizes (S), if it stays at that size, and the sizes.
 
-    What comes to zero is of any size, as the hill between two small wells is.
+    What comes to zero is of any size, as the hill between two small wells is. `which` has the lengths among the
+    coordinates, and those on which anything depends.
     """
+    lengths, moving = which
     arrived, of_sizes = [], []
     for _ in range(_STEPS):
         with np.errstate(all="ignore"):
             forces, stiffness = at_rest.forces(places)
-            rows = np.abs(stiffness).max(axis=2)
-            finite = (
-                np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
-            )
-            places, sizes = places[finite], sizes[finite]
-            forces, stiffness, rows = forces[finite], stiffness[finite], rows[finite]
+            step = np.zeros(places.shape)
+            step[:, moving] = steps_to_zeros(forces[:, moving], stiffness[:, moving][:, :, moving])
+            known = np.isfinite(step).all(axis=1)
+            places, sizes, step = places[known], sizes[known], step[known]
             if not len(places):
                 break
-            step = solved(stiffness / rows[..., None], forces / rows)
             units = np.where(lengths, sizes[:, None], 1.0)
             length = np.abs(step / units).max(axis=1)
             places = places + step / np.fmax(length, 1.0)[:, None]
@@ -146,18 +152,23 @@ def _arrived(
 
 def _different(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Each of these (R, n) once."""
-    found = []
+    found, sizes = [], _sizes_of(np.abs(places).max(axis=0, initial=0.0))
     while len(places):
         found.append(places[0])
-        apart = np.abs(places - places[0]).max(axis=1)
-        places = places[apart > _ONE * np.abs(places[0]).max()]
-    return np.array(found).reshape(-1, places.shape[1])
+        places = places[(np.abs(places - places[0]) > _ONE * sizes).any(axis=1)]
+    return np.array(found).reshape(-1, len(sizes))
 
 
 def _are_among(places: NDArray[np.float64], others: list[Equilibrium], within: float) -> NDArray[np.bool_]:
-    """Which places (R, n) are those of others, within this part of their sizes."""
+    """Which places (R, n) are those of others, within this part of the size of each coordinate."""
     found = np.zeros(len(places), dtype=bool)
-    sizes = np.abs(places).max(axis=1, initial=0.0)
     for each in others:
-        found |= np.abs(places - each.position).max(axis=1, initial=0.0) <= within * sizes
+        sizes = _sizes_of(np.fmax(np.abs(places), np.abs(each.position)))
+        found |= (np.abs(places - each.position) <= within * sizes).all(axis=1)
     return found
+
+
+def _sizes_of(largest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sizes of coordinates by their largest values (…, n): what is but rounding beside another has none of its own."""
+    sizes: NDArray[np.float64] = np.fmax(largest, _ROUNDED * largest.max(axis=-1, initial=0.0, keepdims=True))
+    return sizes

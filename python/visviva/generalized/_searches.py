@@ -50,10 +50,10 @@ _UNDERFLOWN = float(np.finfo(float).tiny / np.finfo(float).eps)
 _LOST = 1e-14
 #: Coordinates within a turn.
 _A_TURN = np.pi + 1e-6
-#: What differs by less than this part after a turn is the same.
+#: What differs by less than this part after turns is the same: a thousand of them leave thirteen digits of a place.
 _REPEATS = 1e-9
 #: Turns after which an angle is the same; of a length a slope may be nothing in one of them.
-_TURNS = (0.0, 1.0, 1e5)
+_TURNS = (0.0, 1.0, 1e3)
 #: How far off equilibria are told of coordinates that are no angles, in units of where the system starts.
 _AS_FAR = 4.0
 

@@ -87,10 +87,10 @@ class SmallMotions:
         Parameters
         ----------
         near : array_like, shape (S, n), optional
-            Where Newton's method starts. If not given, a grid over −π … π of at most 2000 places, and the same of other
-            sizes, 1e-15 to 1e15, for coordinates that are lengths, where a few starts find something. It may miss some;
-            where equilibria go on and on, as those of cos x, only those within −π … π are told, or up to four times the
-            start.
+            Where Newton's method starts. If not given, a grid over −π … π of some thousand places; for coordinates that
+            are lengths also of other sizes, 1e-15 to 1e15, where a few starts find something. It may miss some. Where
+            equilibria go on and on, as those of cos x (more than a hundred, or of more than four powers of ten), only
+            those within −π … π are told, or up to four times the start.
 
         Returns
         -------

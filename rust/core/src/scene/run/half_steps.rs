@@ -1,8 +1,8 @@
 //! What steps of half or twice the length make of the energy at the end, where forces may give and take any, or take some: no law
 //! tells then whether a run was thrown off course, but the method does.
 //!
-//! Looked at where the energy has changed as it does where bodies meet between two steps, and where running once more costs
-//! a moment.
+//! Looked at where the energy has changed as it does where bodies meet between two steps, and where running half and, if that
+//! tells of something, twice as many steps costs a moment.
 
 use super::Part;
 use super::resolved::energy_of;

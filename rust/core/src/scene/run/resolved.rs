@@ -1,5 +1,5 @@
 //! Whether a run has resolved anything: the energy at the end against that at the start, which it may not exceed where
-//! forces only take energy.
+//! forces only take energy; and against what steps of another length make of it, where it has changed.
 //!
 //! Looked at where it costs next to nothing beside the run, so that a result that is wrong by orders of magnitude does
 //! not go out without a word.
@@ -39,8 +39,8 @@ const ROUNDINGS: f64 = 8.0;
 const ALL_THERE_WAS: f64 = 1.0;
 /// … where bodies may come close to each other, or to a center, a passage between two steps changes it by this part or more.
 const BY_A_PASSAGE: f64 = 0.01;
-/// By so much other steps may change what is left of it.
-const BY_CHAOS: f64 = 0.02;
+/// By so much steps of another length may change the energy at the end, as they do where motions are chaotic.
+const BY_OTHER_STEPS: f64 = 0.02;
 
 /// On the way bodies may be so many times faster, in the mean, than the energies at both ends tell.
 const FASTER: f64 = 3.0;
@@ -116,19 +116,15 @@ pub(super) fn look(
                 && half_steps::pays(part, outcome.counts.evaluations)
             {
                 let size = larger(kinetic, kinetic_end).plus(size);
-                // Where twice the steps lead to the same energy, too, half of them need not be taken.
-                for times_as_long in [2.0, 0.5] {
-                    let Ok(other) = half_steps::energy_at_end(part, request, times_as_long, ticker) else {
-                        return Ok(());
-                    };
-                    let off = other.map(|other| other.plus(kinetic_end.plus(potential_end).times(-1.0)));
-                    let error = off.map(|off| off.over(size).to_f64().abs());
-                    // What is chaotic comes to other energies, too, and no shorter steps would help it.
-                    outcome.energy_error = error.filter(|&error| error > BY_CHAOS).unwrap_or(0.0);
-                    if error.is_some_and(|error| error <= BY_CHAOS) {
-                        break;
-                    }
-                }
+                let mut change = |times_as_long| {
+                    let other = half_steps::energy_at_end(part, request, times_as_long, ticker).ok()??;
+                    let off = other.plus(kinetic_end.plus(potential_end).times(-1.0));
+                    Some(off.over(size).to_f64().abs())
+                };
+                // Where twice the steps lead to the same energy, half of them need not be taken.
+                let stays = |change: f64| change <= BY_OTHER_STEPS;
+                let error = if change(2.0).is_some_and(stays) { None } else { change(0.5) };
+                outcome.energy_error = error.filter(|&error| !stays(error)).unwrap_or(0.0);
                 continue;
             }
             let begins_with_nothing = kinetic.plus(absolute(potential)).value().high() == 0.0;

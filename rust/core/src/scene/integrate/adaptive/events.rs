@@ -19,6 +19,11 @@ pub(super) struct Polynomials {
 }
 
 impl Polynomials {
+    /// Comes to another step.
+    fn forget(&mut self) {
+        self.known = 0;
+    }
+
     /// That of a coordinate, made if it is not known yet.
     fn of(&mut self, coordinate: usize, make: impl FnOnce(&mut Vec<[Lanes; 2]>)) -> &[[Lanes; 2]] {
         let known = self.of[..self.known].iter().position(|(other, _)| *other == coordinate);
@@ -128,7 +133,7 @@ impl Run<'_> {
         }
         // The end of the step is read while its inside is asked for.
         after.copy_from(trial.next());
-        polynomials.known = 0;
+        polynomials.forget();
         let mut inside = Inside {
             trial: &mut **trial,
             system: forces.system(),

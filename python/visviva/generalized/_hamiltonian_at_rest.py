@@ -1,0 +1,90 @@
+"""Hamiltonian systems at rest: the momenta of rest, the forces there, and where these vanish.
+
+The one idea: at rest nothing is left but n forces of n coordinates, which Newton's method judges by what is known at
+one place and nowhere else.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.generalized._newton import rates_and_slopes, steps_to_zeros
+from visviva.generalized._searches import SAME
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._hamiltonian import Hamiltonian
+
+__all__ = ["at_zeros_of_forces", "forces_at_rest", "states_at_rest"]
+
+#: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
+_STEPS_TO_REST = 4
+#: Forces lead no further from where they vanish than this part of what is looked at.
+_SETTLED = 1e-5
+_STEPS_ALONG_A_VALLEY = 12
+#: Momenta that differ by more than this part of what is looked at are others.
+_OTHER_MOMENTA = 1e-3
+
+
+def states_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like.
+
+    And at which of the places: those where rates are numbers.
+    """
+    n = places.shape[1]
+    states, index = np.concatenate([places, np.zeros_like(places)], axis=1), np.arange(len(places))
+    for _ in range(_STEPS_TO_REST):
+        rates, slopes = rates_and_slopes(system, states)
+        known = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
+        states, rates, slopes, index = states[known], rates[known], slopes[known], index[known]
+        if not rates[:, :n].any():
+            break
+        inverse = np.linalg.pinv(slopes[:, :n, n:], rcond=SAME)
+        states[:, n:] -= np.einsum("sij,sj->si", inverse, rates[:, :n])
+        if not (np.abs(rates[:, :n]) > SAME * np.abs(slopes[:, :n, n:]).max(initial=0.0)).any():
+            break
+    return states, index
+
+
+def forces_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forces (S, n) at places at rest, and minus their derivatives (S, n, n) where momenta stay those of rest."""
+    n = places.shape[1]
+    states, known = states_at_rest(system, places)
+    forces, stiffness = np.full(places.shape, np.nan), np.full((*places.shape, n), np.nan)
+    rates, slopes = rates_and_slopes(system, states)
+    softer = -slopes[:, n:, :n]
+    if slopes[:, :n, :n].any():
+        softer += slopes[:, n:, n:] @ np.linalg.pinv(slopes[:, :n, n:], rcond=SAME) @ slopes[:, :n, :n]
+    forces[known], stiffness[known] = rates[:, n:], softer
+    return forces, stiffness
+
+
+def at_zeros_of_forces(
+    system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """States (S, 2n) at which forces at rest lead no further, by what is known there and nowhere else.
+
+    What rates are made of at other starts may be so much more that along a valley all of these seem to be round-off.
+    Those go on to where it ends.
+    """
+    n = states.shape[1] // 2
+    # What stays with other momenta than those that are come to from zero is judged by the rates alone.
+    resting = np.full(states.shape, np.nan)
+    rest, known = states_at_rest(system, states[:, :n])
+    resting[known] = rest
+    own = ~(np.abs(states - resting) <= _OTHER_MOMENTA * looked_at).all(axis=1)
+    there, states = [states[own]], states[~own]
+    for count in range(_STEPS_ALONG_A_VALLEY):
+        step = steps_to_zeros(*forces_at_rest(system, states[:, :n]))
+        # Kinks, and what nothing changes, are where they are.
+        step[np.isnan(step).any(axis=1)] = 0.0
+        # A zero of higher order is come to slowly.
+        enough = _SETTLED if count + 1 == _STEPS_ALONG_A_VALLEY else SAME
+        stays = (np.abs(step) <= enough * looked_at[:n]).all(axis=1)
+        there.append(states[stays])
+        length = np.abs(step[~stays] / looked_at[:n]).max(axis=1, initial=1.0, keepdims=True)
+        states, _ = states_at_rest(system, states[~stays, :n] + step[~stays] / length)
+    return np.concatenate(there)
