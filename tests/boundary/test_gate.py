@@ -23,6 +23,7 @@ PLAIN = {
     "drag_reynolds_number",
     "drag_stokes",
     "drag_throw",
+    "force_of_remaining",
     "forces",
     "info",
     "methods",

@@ -125,6 +125,7 @@ def test_copies_merge_as_each_does_alone(threads: int, method: dict[str, Any]) -
     random = np.random.default_rng(5)
     charges, mass = random.normal(size=(6, 4)), random.uniform(0.5, 2.0, (6, 4))
     position = np.array(POSITION) + 0.1 * random.normal(size=(6, 4, 3))
+    position[4] *= 4.0
     pull = vv.Coulomb(CHARGE, k=0.5)
     scene = falling(pull, vv.Spring([0, 1], [2, 3], k=0.3), vv.Oblate([0, 1], J2=0.05, radius=0.4, **OBLATE))
     own = {"parameters": {pull: {"charge": charges}}, "mass": mass, "position": position}
