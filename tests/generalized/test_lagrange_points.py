@@ -71,3 +71,22 @@ def test_all_five_are_found(of: Any, names: list[str], mu: float) -> None:
         # G. Gascheau (1843): the triangular ones are stable below mu = 0.0385; the others never are.
         assert each.stable == (abs(each.position[1]) > 0.1 and mu < 0.0385)
         np.testing.assert_allclose(each.momentum[:2], [-each.position[1], each.position[0]], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("mu", [3e-7, 6.6e-8, 1e-8])
+@pytest.mark.parametrize("names", [["x", "y"], ["x", "y", "z"]])
+def test_beside_a_light_body_no_other_place_counts(names: list[str], mu: float) -> None:
+    """All along its orbit forces are 1e-7 of what they are the sums of, and slow motions as stable as fast ones."""
+    found = by_momenta(names, mu).equilibria()
+    expected = [[x, 0.0] for x in collinear(mu)] + [[0.5 - mu, y] for y in (-np.sqrt(0.75), np.sqrt(0.75))]
+    nearest = [int(np.abs(np.array(expected) - each.position[:2]).max(axis=1).argmin()) for each in found]
+    assert len(set(nearest)) == len(nearest)
+    # The one beyond the light body may be missed, those of triangles and the one opposite to it may not.
+    assert {0, 3, 4} <= set(nearest)
+    for each, place in zip(found, nearest, strict=True):
+        # Forces tell the angle along the orbit by 1e-16 of what they are the sums of, in mu.
+        np.testing.assert_allclose(each.position[:2], expected[place], rtol=0, atol=64 * 2.2e-16 / mu)
+        assert each.stable == (place >= 3)
+        if place >= 3:
+            expected_frequency = np.sqrt((1 - np.sqrt(1 - 27 * mu * (1 - mu))) / 2)
+            np.testing.assert_allclose(each.frequencies[0], expected_frequency, rtol=1e-6, atol=0)

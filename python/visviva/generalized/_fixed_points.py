@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._higher_orders import Curvatures
 
-__all__ = ["fixed_points", "rounding_of_slopes", "slopes_at"]
+__all__ = ["FOUND", "fixed_points", "rounding_of_slopes", "slopes_at"]
 
 #: Directions between those in which H is level, and how far along them it is looked at, in sizes of a state.
 _DIRECTIONS = 8
@@ -50,8 +50,11 @@ _FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 _ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
 _MADE_OF_THEM = 0.1
+#: One soft direction among others so many times as stiff, and what part its stiffness may change by along it.
+_MUCH_STIFFER = 1e6
+_STEADY = 0.1
 #: States are found to this part of their sizes.
-_FOUND = SAME
+FOUND = SAME
 
 
 def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -164,8 +167,13 @@ def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64]
             "there is a kink, as that of |q|; round it off, as by sqrt(q² + width²), or look elsewhere by near",
         )
     # Of rates with forces that no function has, nothing but the linear equations tells.
-    second, off = _second(slopes[None])[0], np.abs(_second(rounding_of_slopes(system, state, size, slopes)[None])[0])
+    second, found_to = _second(slopes[None])[0], FOUND * size
     left = left_open(energy, state, size, units)
+    if left is None:
+        found_to = np.fmin(found_to, _left_by_rounding(energy, state, second))
+    elif _is_simple(energy, np.stack([state, state + left, state - left]), units):
+        left, found_to = None, LAST_DIGITS * size
+    off = np.abs(_second(rounding_of_slopes(system, state, found_to, slopes)[None])[0])
     if left is not None:
         beside = energy.slopes(np.stack([state + left, state - left]))[1]
         off = np.fmax(off, np.abs(beside - second).max(axis=0))
@@ -201,6 +209,28 @@ def slopes_at(
     return with_limits(evaluate, state, width)[width:].reshape(width, width)
 
 
+def _left_by_rounding(energy: Energy, state: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far (2n) a state may be from where all rates vanish, as far as they tell; without end where H is level."""
+    try:
+        inverse = np.linalg.inv(second)
+    except np.linalg.LinAlgError:
+        return np.full(len(state), np.inf)
+    made_of = np.abs(second) @ np.abs(state) + energy.sizes(state[None])[0]
+    left: NDArray[np.float64] = np.abs(inverse) @ (np.abs(energy.slopes(state[None])[0][0]) + LAST_DIGITS * made_of)
+    return left
+
+
+def _is_simple(energy: Energy, states: NDArray[np.float64], units: NDArray[np.float64]) -> bool:
+    """Whether a soft direction of H is as stiff at all states (S, 2n): it is not level, but slow beside others."""
+    scaled = energy.slopes(states)[1] * units * units[:, None]
+    if not np.isfinite(scaled).all():
+        return False
+    values = np.linalg.svd(scaled, compute_uv=False)
+    soft = values[:, -1]
+    alone = bool((values[:, -2] * _MUCH_STIFFER > values[:, 0]).all())
+    return alone and bool((np.abs(soft - soft[0]) <= _STEADY * soft[0]).all() and soft[0] > 0.0)
+
+
 def _second(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Give ∂²H (S, 2n, 2n) of the derivatives of rates J ∂H."""
     n = slopes.shape[-1] // 2
@@ -213,13 +243,13 @@ def _rates_of(second: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def rounding_of_slopes(
-    system: Hamiltonian, state: NDArray[np.float64], size: NDArray[np.float64], slopes: NDArray[np.float64]
+    system: Hamiltonian, state: NDArray[np.float64], found_to: NDArray[np.float64], slopes: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Give what the last digits of the state, as they are found, and of parameters make of the derivatives of rates."""
+    """Give what a state (2n) found to so much and the last digits of parameters make of derivatives of rates."""
     off = LAST_DIGITS * np.abs(slopes)
     n = len(state)
     for signs in nudges(n + len(system._values)):
-        other = slopes_at(system, state + _FOUND * size * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
+        other = slopes_at(system, state + found_to * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
         off = np.fmax(off, np.abs(other - slopes))
     return off
 

@@ -22,9 +22,10 @@ __all__ = ["at_zeros_of_forces", "forces_at_rest", "states_at_rest"]
 
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
-#: Forces lead no further from where they vanish than this part of what is looked at.
-_SETTLED = 1e-5
-_STEPS_ALONG_A_VALLEY = 12
+#: Newton's steps along a valley that is curved. Every other one leads back to its ground, however small it is, so that
+#: several small ones tell that it ends.
+_STEPS_ALONG_A_VALLEY = 60
+_SMALL_STEPS = 4
 #: Momenta that differ by more than this part of what is looked at are others.
 _OTHER_MOMENTA = 1e-3
 
@@ -77,14 +78,19 @@ def at_zeros_of_forces(
     resting[known] = rest
     own = ~(np.abs(states - resting) <= _OTHER_MOMENTA * looked_at).all(axis=1)
     there, states = [states[own]], states[~own]
-    for count in range(_STEPS_ALONG_A_VALLEY):
-        step = steps_to_zeros(*forces_at_rest(system, states[:, :n]))
+    small = np.zeros(len(states), dtype=int)
+    for _ in range(_STEPS_ALONG_A_VALLEY):
+        step = steps_to_zeros(*forces_at_rest(system, states[:, :n])) / looked_at[:n]
         # Kinks, and what nothing changes, are where they are.
         step[np.isnan(step).any(axis=1)] = 0.0
-        # A zero of higher order is come to slowly.
-        enough = _SETTLED if count + 1 == _STEPS_ALONG_A_VALLEY else SAME
-        stays = (np.abs(step) <= enough * looked_at[:n]).all(axis=1)
+        length = np.abs(step).max(axis=1)
+        small = np.where(length <= SAME, small + 1, 0)
+        stays = (small >= _SMALL_STEPS) | (length == 0.0)
         there.append(states[stays])
-        length = np.abs(step[~stays] / looked_at[:n]).max(axis=1, initial=1.0, keepdims=True)
-        states, _ = states_at_rest(system, states[~stays, :n] + step[~stays] / length)
+        step, length, states, small = step[~stays], length[~stays], states[~stays], small[~stays]
+        ahead, known = states_at_rest(system, states[:, :n] + step / np.fmax(length, 1.0)[:, None] * looked_at[:n])
+        # Nothing is known at a kink, but of states right beside it.
+        at_kinks = np.setdiff1d(np.flatnonzero(small), known)
+        there.append(states[at_kinks])
+        states, small = ahead, small[known]
     return np.concatenate(there)

@@ -14,7 +14,7 @@ from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import eigenmodes, of_matrices
 from visviva.generalized._constrained_motions import BALANCED
-from visviva.generalized._fixed_points import fixed_points, rounding_of_slopes, slopes_at
+from visviva.generalized._fixed_points import FOUND, fixed_points, rounding_of_slopes, slopes_at
 from visviva.generalized._matrices import Matrices
 from visviva.generalized._newton import rates_and_slopes
 
@@ -65,7 +65,7 @@ def linearization_by_momenta(
         raise InvalidInput("H", "expected ∂²H/∂p² that is not singular, and at this place it is") from None
     by = d @ mass
     found = Matrices(rates[n:], mass, -(mass @ a + by), by @ a - c)
-    unsure = rounding_of_slopes(system, state, size, slopes)
+    unsure = rounding_of_slopes(system, state, FOUND * size, slopes)
     of_by = np.abs(by) @ unsure[:n, n:] @ np.abs(mass) + unsure[n:, n:] @ np.abs(mass)
     of_stiffness = unsure[n:, :n] + np.abs(by) @ unsure[:n, :n] + of_by @ np.abs(a)
     return of_matrices(place, (found, of_stiffness, None), eigenmodes(found, None), system.coordinates)

@@ -34,6 +34,8 @@ _LINEAR = 0.1
 #: A step is halved so often at most, until rates are less by at least this part of what they would be by the whole.
 _HALVINGS = 40
 _GAIN = 1e-4
+#: Slopes that are as many times as large as those of most states.
+_AT_A_POLE = 1e6
 #: Rates that are this part of what they are made of are round-off.
 _BALANCED = 1e-10
 
@@ -52,7 +54,10 @@ class Scales(NamedTuple):
 def scales_of(system: Hamiltonian, states: NDArray[np.float64]) -> Scales:
     """Give those of states (S, 2n), by what rates depend on there."""
     slopes = np.abs(rates_and_slopes(system, states)[1])
-    slopes = np.where(np.isfinite(slopes), slopes, 0.0).max(axis=0)
+    slopes = np.where(np.isfinite(slopes), slopes, 0.0)
+    largest = slopes.max(axis=(1, 2))
+    # A start next to a pole is no measure of all others.
+    slopes = slopes[largest / _AT_A_POLE <= np.median(largest)].max(axis=0)
     units = balanced_units(slopes[None])[0]
     with np.errstate(over="ignore"):
         size = float((np.abs(states) / units)[:, : len(units) // 2].max(initial=0.0))

@@ -90,8 +90,10 @@ def with_other_sizes(
         return known
     places = np.concatenate(found_from(over_a_turn, np.array(hits)))
     # What is zero for a search among large places may be known better.
-    near_zero = any(np.abs(each.position[lengths]).max() <= _ARRIVED * max(hits) for each in known)
-    places = places[places[:, lengths].any(axis=1) | (not near_zero)]
+    for each in known:
+        if np.abs(each.position[lengths]).max() <= _ARRIVED * max(hits):
+            turned = np.abs(places - each.position)[:, distinguishing & is_angle].max(axis=1, initial=0.0)
+            places = places[places[:, lengths].any(axis=1) | (turned > _ONE)]
     if len(places) > _MOST:
         return known
     try:
@@ -138,7 +140,7 @@ def _arrived(
     places, sizes = np.concatenate([*arrived, places[:0]]), np.concatenate([*of_sizes, sizes[:0]])
     far = np.abs(places[:, lengths]).max(axis=1, initial=0.0)
     zero = far <= _ARRIVED * sizes
-    places[zero[:, None] & lengths] = 0.0
+    places[(zero[:, None] | (np.abs(places) <= _ROUNDED * sizes[:, None])) & lengths] = 0.0
     own = zero | ((far * _HALF_WAY > sizes) & (far <= sizes * _HALF_WAY))
     own[own] &= at_rest.balanced(places[own])
     places, sizes = places[own], sizes[own]
