@@ -1,4 +1,7 @@
-//! Which boxes meet: sorted along the axis on which they are spread most, each is compared with those that it meets there.
+//! Which boxes meet: sorted along the axis on which they are spread most, each is compared with those that begin within it.
+
+/// A body's box, low and high along three axes, and its index.
+type Boxed = ([[f64; 2]; 3], usize);
 
 /// Calls for each pair of boxes (low and high along three axes) that meet, one of which is a sphere's.
 pub fn swept(boxes: &[[[f64; 2]; 3]], is_sphere: impl Fn(usize) -> bool, mut each: impl FnMut(usize, usize)) {
@@ -7,21 +10,39 @@ pub fn swept(boxes: &[[[f64; 2]; 3]], is_sphere: impl Fn(usize) -> bool, mut eac
         boxes.iter().fold(f64::MIN, |high, own| high.max(own[axis][0])) - low
     };
     let axis = (1..3).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&i, &j| boxes[i][axis][0].total_cmp(&boxes[j][axis][0]));
-    let meet = |i: usize, j: usize| boxes[i].iter().zip(&boxes[j]).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
+    let sorted = |sphere: bool| {
+        let own = |(index, own): (usize, &[[f64; 2]; 3])| {
+            // What is no number meets nobody.
+            (is_sphere(index) == sphere && !own[axis][0].is_nan()).then_some((*own, index))
+        };
+        let mut sorted: Vec<Boxed> = boxes.iter().enumerate().filter_map(own).collect();
+        sorted.sort_by(|(a, _), (b, _)| a[axis][0].total_cmp(&b[axis][0]));
+        sorted
+    };
     // Points never meet points: millions of them beside a few spheres cost next to nothing.
-    let mut open: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
-    for &next in &order {
-        let from = boxes[next][axis][0];
-        let sphere = is_sphere(next);
-        for others in &mut open[usize::from(!sphere)..] {
-            others.retain(|&other| boxes[other][axis][1] >= from);
-            for &other in others.iter().filter(|&&other| meet(other, next)) {
-                each(other, next);
+    let (spheres, points) = (sorted(true), sorted(false));
+    let mut those_that_begin_in = |one: &Boxed, others: &[Boxed]| {
+        let (own, index) = one;
+        for (other, to) in others.iter().take_while(|(other, _)| other[axis][0] <= own[axis][1]) {
+            if (0..3).all(|c| own[c][0] <= other[c][1] && other[c][0] <= own[c][1]) {
+                each(*index, *to);
             }
         }
-        open[usize::from(sphere)].push(next);
+    };
+    for (place, sphere) in spheres.iter().enumerate() {
+        those_that_begin_in(sphere, &spheres[place + 1..]);
+    }
+    // Of a sphere and a point the one that begins later begins within the other.
+    let mut first = 0;
+    for sphere in &spheres {
+        first += points[first..].iter().take_while(|(point, _)| point[axis][0] < sphere.0[axis][0]).count();
+        those_that_begin_in(sphere, &points[first..]);
+    }
+    first = 0;
+    for point in &points {
+        first +=
+            spheres[first..].iter().take_while(|(sphere, _)| sphere[axis][0] <= point.0[axis][0]).count();
+        those_that_begin_in(point, &spheres[first..]);
     }
 }
 

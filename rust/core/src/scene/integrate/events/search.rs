@@ -3,7 +3,7 @@
 
 use super::super::super::events::{Sight, What, dot};
 use super::super::super::unit::Prepared;
-use super::clear::{cubic, cubic_at, is_straight};
+use super::clear::{cubic, cubic_at, is_straight, keeps_clear_after_all};
 use super::nearest::around;
 use super::turns::turns;
 use super::{Interpolant, Span, Watch};
@@ -48,6 +48,11 @@ pub(super) struct Search<'s, 'a> {
 /// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
 pub(super) fn crosses(start: f64, end: f64) -> bool {
     (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
+}
+
+/// How fast a function goes from one end of a bracket to the other.
+fn slope_of([from, to]: Bracket) -> f64 {
+    (to.1 - from.1) / (to.0 - from.0)
 }
 
 /// The brackets between points beside each other.
@@ -119,7 +124,7 @@ impl Search<'_, '_> {
         {
             let mut zeros = Vec::new();
             if self.counts(self.ends[0]) {
-                zeros.push((self.one_zero(theta, slope, step, ticker)?, self.ends[0] < 0.0));
+                zeros.push((self.one_zero(self.whole(), (theta, slope), step, ticker)?, self.ends[0] < 0.0));
             }
             return Ok(zeros);
         }
@@ -175,8 +180,8 @@ impl Search<'_, '_> {
                 return Ok(Vec::new());
             }
             let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
-            let slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
-            return Ok(vec![(self.one_zero(theta, slope, step, ticker)?, self.ends[0] < 0.0)]);
+            let near = (theta, slope_of(bracket));
+            return Ok(vec![(self.one_zero(self.whole(), near, step, ticker)?, self.ends[0] < 0.0)]);
         }
         let mut zeros = Vec::new();
         let mut told = Vec::new();
@@ -192,10 +197,18 @@ impl Search<'_, '_> {
                 }
                 None => {}
             }
+            // The run ends where spheres touch.
+            if self.is_contact() && told.last().is_some_and(|&[a, _]| self.counts(a.1)) {
+                break;
+            }
         }
         for [a, b] in told {
             if self.counts(a.1) {
-                let theta = zero([a, b], |theta| self.value_at(theta, step, ticker))?;
+                let theta = if self.is_contact() && self.watch.terms.is_empty() {
+                    self.touch([a, b], step, ticker)?
+                } else {
+                    zero([a, b], |theta| self.value_at(theta, step, ticker))?
+                };
                 zeros.push((self.polished(theta, [a.0, b.0], step, ticker)?, a.1 < 0.0));
             }
         }
@@ -249,16 +262,57 @@ impl Search<'_, '_> {
         Ok(Some((theta, slope)))
     }
 
-    /// The one zero of a step, which is near `theta`, where the function has about that slope. Each shadow step costs as much
-    /// as a step: a few secants do.
+    fn whole(&self) -> Bracket {
+        [(0.0, self.ends[0]), (1.0, self.ends[1])]
+    }
+
+    /// Whether it is looked for spheres that touch, for the first time in the step alone.
+    fn is_contact(&self) -> bool {
+        self.event >= self.watch.events.len()
+    }
+
+    /// Where in the step spheres would touch, or be nearest, that go on as they do at its start: those that do so sooner are
+    /// looked at first.
+    pub(super) fn soonest(&self) -> f64 {
+        let (h, sight) = (self.length(), &self.watch.sights[self.event]);
+        let (speed, approach) =
+            (h * h * dot(sight.velocity, sight.velocity), -h * dot(sight.distance, sight.velocity));
+        let square = approach * approach - speed * self.ends[0];
+        (approach - square.max(0.0).sqrt()) / speed
+    }
+
+    /// Whether spheres do not touch up to a place in the step, for all that is known of their motion from its ends.
+    pub(super) fn is_clear_until(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<bool> {
+        let there = self.sight_between(theta, ticker)?;
+        let here = &self.watch.sights[self.event];
+        let h = theta * self.length();
+        let Some(rates) = self.watch.event(self.event).0.rates([here, &there], h) else { return Ok(false) };
+        Ok(keeps_clear_after_all(cubic([self.ends[0], there.value], rates, h)))
+    }
+
+    /// Where spheres touch that come into reach of each other in a part of a step.
+    fn touch(&mut self, part: Bracket, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let [from, to] = part.map(|(theta, _)| self.sight_between(theta, ticker));
+        let between = [(part[0].0, from?.value), (part[1].0, to?.value)];
+        if !crosses(between[0].1, between[1].1) {
+            return zero(part, |theta| self.value_at(theta, step, ticker));
+        }
+        let theta = zero(between, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
+        let sight = self.sight_between(theta, ticker)?;
+        let rate = self.watch.event(self.event).0.rate(&sight);
+        let slope = rate.map_or_else(|| slope_of(part), |rate| rate * self.length());
+        self.one_zero(part, (theta, slope), step, ticker)
+    }
+
+    /// The one zero in a part of a step, which is near `theta`, where the function has about that slope. Each shadow step costs
+    /// as much as a step: a few secants do.
     fn one_zero(
         &mut self,
-        mut theta: f64,
-        mut slope: f64,
+        mut whole: Bracket,
+        (mut theta, mut slope): (f64, f64),
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
-        let mut whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
         let mut last: Option<(f64, f64)> = None;
         for _ in 0..SECANTS {
             if !(whole[0].0 < theta && theta < whole[1].0) {
