@@ -43,9 +43,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FOUND", "fixed_points", "rounding_of_slopes", "slopes_at"]
 
-#: Directions between those in which H is level, and how far along them it is looked at, in sizes of a state.
-_DIRECTIONS = 8
-_FAR_ALONG = (0.03, -0.03, 0.3, -0.3)
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
 _ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
@@ -189,7 +186,7 @@ def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64]
     frequencies = np.sort(np.abs(values.imag[values.imag > least]))
     stable = bool((values.real <= _ON_THE_AXIS * largest).all())
     if stable and not (values.real < -_ON_THE_AXIS * largest).all():
-        by_energy = _by_energy(energy, state, about, off, size) if about is not None and level else None
+        by_energy = _by_energy(energy, state, about, off) if about is not None and level else None
         # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
         own = bool(largest > 0.0) and bool(np.linalg.svd(vectors, compute_uv=False)[-1] > _ON_THE_AXIS)
         stable = own if by_energy is None else by_energy
@@ -275,13 +272,7 @@ def _energy(system: Hamiltonian) -> Energy:
     return Energy(slopes, sizes)
 
 
-def _by_energy(
-    energy: Energy,
-    state: NDArray[np.float64],
-    about: Curvatures,
-    off: NDArray[np.float64],
-    size: NDArray[np.float64],
-) -> bool | None:
+def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64]) -> bool | None:
     """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known.
 
     Where it stays level are equilibria, too: that a motion drifts along them does not count, as along a coordinate that
@@ -291,16 +282,4 @@ def _by_energy(
     if len(known) > 1:
         return None
     beside = set(rises(energy, state, about, off))
-    if {-1.0, 1.0} <= known | beside:
-        return False
-    return True if 0.0 not in beside or _stays_level(energy, state, about, size) else None
-
-
-def _stays_level(energy: Energy, state: NDArray[np.float64], about: Curvatures, size: NDArray[np.float64]) -> bool:
-    """Whether all is in balance far along every direction in which H is level to second order."""
-    level = (about.vectors * about.sizes[:, None])[:, about.values == 0.0]
-    mixed = np.random.default_rng(0).normal(size=(level.shape[1], _DIRECTIONS))
-    ways = level @ np.concatenate([np.eye(level.shape[1]), mixed], axis=1)
-    ways = ways * (1.0 / np.abs(ways / size[:, None]).max(axis=0))
-    places = np.concatenate([state + part * ways.T for part in _FAR_ALONG])
-    return bool(round_off(energy, places, size).all())
+    return not {-1.0, 1.0} <= known | beside

@@ -102,15 +102,24 @@ def rises(
     rays = np.concatenate([directions, -directions]) @ along.T
     # Places in the order of rays, then distances.
     ahead = (_DISTANCES[None, :, None] * rays[:, None, :]).reshape(-1, len(place))
-    aside = np.zeros_like(ahead)
-    at_rest, bent = energy.slopes(place[None])
+    bent = energy.slopes(place[None])[1]
     back = np.zeros((len(place), len(place)))
+
+    def eased(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far from places the others go until no force is on them."""
+        aside = np.zeros_like(places)
+        for _ in range(_STEPS if back.any() else 0):
+            aside = aside - energy.slopes(places + aside)[0] @ back.T
+        return aside
+
     with np.errstate(all="ignore"):
         if others.shape[1]:
             back = others @ np.linalg.inv(others.T @ np.where(np.isfinite(bent[0]), bent[0], 0.0) @ others) @ others.T
-            for _ in range(_STEPS):
-                found, _ = energy.slopes(place + ahead + aside)
-                aside = aside - found @ back.T
+        # The place itself may be beside the ground of a valley by what it is known to.
+        own = eased(place[None])[0]
+        place = np.where(np.isfinite(own).all(), place + own, place)
+        at_rest, _ = energy.slopes(place[None])
+        aside = eased(place + ahead)
         there = place + ahead + aside
         found, bent = energy.slopes(there)
         bent = np.where(np.isfinite(bent), np.abs(bent), 0.0)

@@ -101,6 +101,10 @@ def with_other_sizes(
     except InvalidInput:
         # What is told of places is told of none of these.
         return known
+    # What goes on to zero from there, slowly as to a zero of higher order, is that.
+    far = [float(np.abs(each.position[lengths]).max()) for each in found]
+    stays = [size == 0.0 or any(0.1 * hit <= size <= 10.0 * hit for hit in hits) for size in far]
+    found = [each for each, at_its_size in zip(found, stays, strict=True) if at_its_size]
     # A search among larger places has told them less exactly.
     again = _are_among(np.array([each.position for each in known]).reshape(-1, len(lengths)), found, _ONE)
     return found + [each for each, told in zip(known, again.tolist(), strict=True) if not told]

@@ -29,12 +29,25 @@ impl Events {
     /// Adds what the units of a part found up to the end of their copy.
     pub(super) fn gather(&mut self, part: &Part<'_>, reports: &[Report], outcomes: &[Outcome]) {
         let t0 = part.scene.t0;
+        let elapsed = |t: f64| (t - t0).abs();
+        let mut ends = vec![f64::INFINITY; outcomes.len()];
         for report in reports {
             let copy = part.member(report.unit.copy);
-            let end = (outcomes[copy].time - t0).abs();
-            // What a unit found beyond the last state of its copy is true, unless an event ended the motion there.
-            let stopped = outcomes[copy].ending == Ending::Stopped;
-            for found in report.found.iter().filter(|found| !stopped || (found.t - t0).abs() <= end) {
+            let end = match report.ending {
+                // What was found beyond the last state of a run that was interrupted is true.
+                Ending::Finished | Ending::Interrupted => f64::INFINITY,
+                // When is not known: later than all that was found on the way.
+                Ending::NotFinite => {
+                    let last = report.found.last().map_or(0.0, |found| elapsed(found.t));
+                    last.max(elapsed(outcomes[copy].time))
+                }
+                _ => elapsed(report.time),
+            };
+            ends[copy] = ends[copy].min(end);
+        }
+        for report in reports {
+            let copy = part.member(report.unit.copy);
+            for found in report.found.iter().filter(|found| elapsed(found.t) <= ends[copy]) {
                 let states = self.states.len();
                 self.states.resize(states + part.scene.particles, [[f64::NAN; 3]; 2]);
                 for (&state, &body) in found.states.iter().zip(&*report.unit.bodies) {

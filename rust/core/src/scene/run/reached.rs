@@ -11,6 +11,7 @@ use super::super::request::Request;
 use super::super::unit::Unit;
 use super::{Outcome, Part, Reached};
 use crate::error::Result;
+use crate::numerics::power_of_two::power_of_two;
 use crate::parallel::Ticker;
 use crate::scene::Scene;
 use crate::scene::columns::Wanted;
@@ -34,12 +35,11 @@ pub(super) fn gather(
         let outcome = &mut outcomes[member];
         let time = time_of(report, request, t0);
         let earlier = (time - t0).abs() < (outcome.time - t0).abs();
-        // Of a copy that an event stops, nothing counts that would have come later.
+        // Of what ends a copy nothing counts that would have come later.
         let replaces = match (&outcome.ending, &report.ending) {
             (_, Ending::Finished) => false,
             (Ending::Finished, _) => true,
-            (Ending::Stopped, _) | (_, Ending::Stopped) => earlier,
-            _ => false,
+            _ => earlier,
         };
         if replaces {
             outcome.ending =
@@ -65,8 +65,11 @@ pub(super) fn gather(
         }
     }
     behind.sort_by_key(|report| report.unit.copy);
-    for of_copy in behind.chunk_by(|a, b| a.unit.copy == b.unit.copy) {
-        bring_together(part, request, of_copy, columns, outcomes, reached, ticker)?;
+    for apart in behind.chunk_by(|a, b| a.unit.copy == b.unit.copy) {
+        let of_copy =
+            |report: &&Report| report.unit.copy == apart[0].unit.copy && !report.unit.recorded.is_empty();
+        let all: Vec<&Report> = reports.iter().filter(of_copy).collect();
+        bring_together(part, request, (apart, &all), columns, outcomes, reached, ticker)?;
     }
     for report in reports.iter().filter(|report| report.ending == Ending::Stopped) {
         if report.time == outcomes[part.member(report.unit.copy)].time {
@@ -130,11 +133,14 @@ fn put(part: &Part<'_>, report: &Report, reached: &mut Reached) {
     }
 }
 
-/// Brings a copy to one time, whose units `apart` are not at the time of its outcome.
+/// How often units are brought together at an earlier time, where some do not come to the one before.
+const ATTEMPTS: i32 = 8;
+
+/// Brings a copy to one time, of whose units, which are `all`, those `apart` are not at the time of its outcome.
 fn bring_together(
     part: &Part<'_>,
     request: &Request,
-    apart: &[&Report],
+    (apart, all): (&[&Report], &[&Report]),
     columns: &Columns,
     outcomes: &mut [Outcome],
     reached: &mut Reached,
@@ -145,12 +151,21 @@ fn bring_together(
     let row = request.times[..outcome.rows].iter().rposition(|&t| t == outcome.time);
     let on_a_row = apart.iter().all(|report| report.ending == Ending::NotFinite) && row.is_some();
     let interrupted = ticker.tick().is_err();
-    if outcome.time != scene.t0
-        && !interrupted
-        && !on_a_row
-        && again(part, request, apart, outcome.time, reached, ticker)?
-    {
-        return Ok(());
+    let after_row = |time: f64| {
+        let row = outcome.rows.checked_sub(1).map_or(scene.t0, |row| request.times[row]);
+        (time - scene.t0).abs() > (row - scene.t0).abs()
+    };
+    let (mut units, mut time) = (apart, outcome.time);
+    for attempt in 0..ATTEMPTS {
+        if interrupted || on_a_row || !(attempt == 0 || after_row(time)) || time == scene.t0 {
+            break;
+        }
+        let Some(short) = again(part, request, units, time, reached, ticker)? else {
+            outcome.time = time;
+            return Ok(());
+        };
+        // A close encounter is where it is only to the last digits: on other steps some end a little earlier.
+        (units, time) = (all, short - (short - scene.t0) * power_of_two(4 * attempt - 44));
     }
     let turning = scene.rigid.is_none() || columns.rigid > 0;
     let recorded =
@@ -188,7 +203,7 @@ fn bring_together(
     Ok(())
 }
 
-/// Integrates units once more, up to a time at which they are finite; whether all of them came there.
+/// Integrates units once more, up to a time at which they are finite; if not all of them come there, where the first ends.
 fn again(
     part: &Part<'_>,
     request: &Request,
@@ -196,7 +211,7 @@ fn again(
     time: f64,
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
-) -> Result<bool> {
+) -> Result<Option<f64>> {
     let nothing =
         Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false, rigid: 0 };
     let mut columns = Columns::new(part.scene.copies, 1, part.scene.particles, &nothing)?;
@@ -219,9 +234,12 @@ fn again(
     };
     let units: Vec<Unit> = apart.iter().map(|report| report.unit.clone()).collect();
     let reports = integrate::run_units(&job, units, ticker)?;
-    let there = reports.iter().all(|report| report.ending == Ending::Finished);
-    if there {
+    let t0 = part.whole.t0;
+    let short = reports.iter().filter(|report| report.ending != Ending::Finished);
+    let time_of = |report: &Report| if report.ending == Ending::NotFinite { t0 } else { report.time };
+    let short = short.map(time_of).min_by(|a, b| (a - t0).abs().total_cmp(&(b - t0).abs()));
+    if short.is_none() {
         reports.iter().for_each(|report| put(part, report, reached));
     }
-    Ok(there)
+    Ok(short)
 }
