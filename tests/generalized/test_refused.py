@@ -57,7 +57,7 @@ REFUSED = [
     (run(VALLEY, 1.0, method="gauss16"), "method", f"gauss16 {OVER_A_KINK}, as if it did not; dop853 makes"),
     (run(VALLEY, 1.0, method="gauss4"), "method", f"gauss4 {OVER_A_KINK}"),
     (run(VALLEY.ensemble(position=[[1.0], [2.0]]), 1.0, method="gauss8"), "method", f"gauss8 {OVER_A_KINK}"),
-    (lambda: VALLEY.poincare("x", 5.0), "method", f"gauss16 {OVER_A_KINK}"),
+    (lambda: VALLEY.poincare("x", 5.0, method="gauss16"), "method", f"gauss16 {OVER_A_KINK}"),
     (lambda: VALLEY.flow_jacobian(5.0), "system", ACROSS_A_KINK),
     (lambda: VALLEY.lyapunov_exponents(5.0), "system", ACROSS_A_KINK),
     (lambda: VALLEY.boundary_value(5.0, [0.0]), "system", ACROSS_A_KINK),

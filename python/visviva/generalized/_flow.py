@@ -35,7 +35,7 @@ class Flow:
         t: float,
         *,
         direction: EventDirection = 1,
-        method: GeneralizedMethodName | Method = "gauss16",
+        method: GeneralizedMethodName | Method = "auto",
         rtol: float = 1e-12,
         dt: float | None = None,
     ) -> PoincareSection:

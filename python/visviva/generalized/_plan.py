@@ -52,7 +52,7 @@ class GeneralizedPlan(Shown):
     def _of(cls, system: GeneralizedSystem, asked: dict[str, Any]) -> GeneralizedPlan:
         found = system._structure
         n, constraints = len(system.coordinates), system._constraints()
-        held = found["conserves_energy"] and asked["method"].startswith("gauss") and asked["dt"] is None
+        held = found["holds_steps"] and asked["method"].startswith("gauss") and asked["dt"] is None
         steps = (
             "none: exact at every output time" if asked["method"] == LINEAR
             else f"{asked['dt']:g}, all alike" if asked["dt"] is not None

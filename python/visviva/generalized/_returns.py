@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.generalized._calculus import Calculus
+from visviva.generalized._methods import ACROSS_KINKS
 from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
@@ -30,7 +31,10 @@ __all__ = [
     "period_of_hamiltonian",
 ]
 
-_RTOL = 1e-15
+#: Of methods that choose their steps at every place, the second finds kinks, and takes few steps where most of the motion
+#: is slow; the first keeps the step of its start, and the energy.
+_HELD, _CHOSEN = "gauss16", ACROSS_KINKS
+_RTOL = {_HELD: 1e-15, _CHOSEN: 1e-14}
 _OF_A_ROTATION = "the period of a rotation is period(turn=2π)"
 _OF_AN_OSCILLATION = "the period of an oscillation is period()"
 #: The start again: what is nearer to it than this part of how far the motion goes. Another line across is not.
@@ -71,7 +75,8 @@ def period_by_return(system: _Of, turn: float | None) -> float:
 
 def action_by_return(system: _Of, turn: float | None) -> float:
     """Give its action variable."""
-    return _action(system, system._start(), _by_return(system, turn)[1], turn)
+    _, span, method = _by_return(system, turn)
+    return _action(system, (span, method), turn)
 
 
 def _by_velocity(system: Hamiltonian) -> Any:
@@ -106,8 +111,8 @@ def gauge_part(system: Lagrangian, turn: float) -> float:
     )
 
 
-def _by_return(system: _Of, turn: float | None) -> tuple[float, float]:
-    """Give the period, and the time along which the coordinate goes the way of the turn."""
+def _by_return(system: _Of, turn: float | None) -> tuple[float, float, str]:
+    """Give the period, the time along which the coordinate goes the way of the turn, and the method that tells them."""
     start = system._start()
     system._check_start()
     rates = _rates(system, start)
@@ -118,14 +123,16 @@ def _by_return(system: _Of, turn: float | None) -> tuple[float, float]:
             raise InvalidInput("turn", f"the motion turns back before it has gone so far; {_OF_AN_OSCILLATION}")
         _refuse_unless_it_repeats(system, start, turn)
     forward = 1.0 if turn is None else float(np.sign(turn * rates[0]))
-    period = _return_time(system, start, turn, forward)
+    period, method, doubt = _return_time(system, start, turn, forward)
     try:
-        nearby = _return_time(system, start * (1.0 + 2.0**-50), turn, forward)
+        nearby, _, _ = _return_time(system, start * (1.0 + 2.0**-50), turn, forward, method)
     except InvalidInput:
         nearby = np.inf
     if abs(nearby - period) > _KNOWN * period:
+        if doubt is not None:
+            raise doubt
         raise InvalidInput("position", "the motion is on a separatrix, but for round-off, and has no period")
-    return period, period * forward
+    return period, period * forward, method
 
 
 def _rates(system: _Of, state: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -149,18 +156,26 @@ def _refuse_unless_it_repeats(system: _Of, start: NDArray[np.float64], turn: flo
         raise InvalidInput("turn", f"the energy does not repeat after {turn:g}, so the motion has no period of that")
 
 
-def _return_time(system: _Of, start: NDArray[np.float64], turn: float | None, forward: float) -> float:
+def _return_time(
+    system: _Of, start: NDArray[np.float64], turn: float | None, forward: float, method: str | None = None
+) -> tuple[float, str, InvalidInput | None]:
+    """Give the time of return, the method that came there, of those that may if none is given, and why no other did."""
     rates = _rates(system, start)
     span = _shortest_time(system, start, rates)
     far = np.zeros(2) if turn is None else np.array([turn, 0.0])
-    why = further = ""
+    method = method or (_CHOSEN if system._structure["kinks"] else _HELD)
+    doubt = None
+    why = ""
     for _ in range(_DOUBLINGS):
         span *= 2.0
         try:
-            result = _followed(system, start, rates, far, forward * span)
+            result = _followed(system, start, rates, (far, forward * span, method))
+            if result["endings"][0] == "too many steps" and method == _HELD:
+                doubt = _no_return(turn, _many_steps(result), _of_many_steps(system))
+                method = _CHOSEN
+                result = _followed(system, start, rates, (far, forward * span, method))
             if result["endings"][0] == "too many steps":
-                why, further = f" in {_MOST_STEPS} steps, until t = {result['reached'][0]:.6g}", _of_many_steps(system)
-                break
+                raise doubt or _no_return(turn, _many_steps(result), _of_many_steps(system))
             whole(result, "motion")
         except ConvergenceError as error:
             why = f" ({error})"
@@ -170,10 +185,18 @@ def _return_time(system: _Of, start: NDArray[np.float64], turn: float | None, fo
         sizes = np.ptp(along, axis=0) + np.abs(along).max(axis=0)
         same = (np.abs(states - start - far) <= _SAME * sizes).all(axis=1) & (np.abs(times) > 1e-3 * _SAME * span)
         if same.any():
-            return float(abs(times[np.argmax(same)]))
+            return float(abs(times[np.argmax(same)])), method, doubt
+    raise doubt or _no_return(turn, why, "")
+
+
+def _many_steps(result: dict[str, Any]) -> str:
+    return f" in {_MOST_STEPS} steps, until t = {result['reached'][0]:.6g}"
+
+
+def _no_return(turn: float | None, why: str, further: str) -> InvalidInput:
     if turn is None:
-        raise InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}{further}")
-    raise InvalidInput(
+        return InvalidInput("position", f"the motion does not come back to its start{why}; {_OF_A_ROTATION}{further}")
+    return InvalidInput(
         "turn", f"the motion does not come to its start after a turn{why}; {_OF_AN_OSCILLATION}{further}"
     )
 
@@ -188,9 +211,13 @@ def _of_many_steps(system: _Of) -> str:
 
 
 def _followed(
-    system: _Of, start: NDArray[np.float64], rates: NDArray[np.float64], far: NDArray[np.float64], span: float
+    system: _Of,
+    start: NDArray[np.float64],
+    rates: NDArray[np.float64],
+    along: tuple[NDArray[np.float64], float, str],
 ) -> dict[str, Any]:
-    """Give the motion for a time, its events where the flow passes a line across it at the start."""
+    """Give the motion for a time by a method, its events where the flow passes a line across it at the start, so far on."""
+    far, span, method = along
     end = system.t0 + span
     # Each number by how fast it changes: of a motion that begins at a turning point the momentum alone does.
     name = int(np.argmax(np.abs(rates) * np.array([abs(start[1]) or 1.0, abs(start[0]) or 1.0])))
@@ -199,7 +226,7 @@ def _followed(
     c = Calculus(system)
     variable = c.adopted([("variable", [], float(name))], [0])[0]
     section = c.with_derivatives([variable - float(start[name] + far[name])])[0][0]
-    asked, _ = system._asked(np.array([system.t0, end]), "gauss16", _RTOL, None, None)
+    asked, _ = system._asked(np.array([system.t0, end]), method, _RTOL[method], None, None)
     asked["max_steps"] = _MOST_STEPS
     function = {"nodes": c._nodes.all, "root": section._place, "energy": None, "function": None}
     asked["events"] = [function | {"direction": float(np.sign(rates[name])), "last": None}]
@@ -222,8 +249,9 @@ def _shortest_time(system: _Of, start: NDArray[np.float64], rates: NDArray[np.fl
     return float(min(times)) if times else float(1.0 / np.abs(rates).max())
 
 
-def _action(system: _Of, start: NDArray[np.float64], span: float, turn: float | None) -> float:
-    """Give ∮ p dq / 2π: along the motion of a rotation, the area of an oscillation."""
+def _action(system: _Of, along: tuple[float, str], turn: float | None) -> float:
+    """Give ∮ p dq / 2π for a time by a method: along the motion of a rotation, the area of an oscillation."""
+    (span, method), start = along, system._start()
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     center = None
 
@@ -233,7 +261,7 @@ def _action(system: _Of, start: NDArray[np.float64], span: float, turn: float | 
         middle, half = edges.mean(axis=1)[:, None], 0.5 * np.diff(edges, axis=1)
         parts = (middle + half * nodes).ravel()
         times = system.t0 + span * np.append(0.0, parts)
-        states = _states(system, start, times)
+        states = _states(system, start, times, method)
         rates = _rates_at(system, times[1:], states)
         momenta = states[:, 1]
         if system._source.kind == "lagrangian":
@@ -261,10 +289,12 @@ def _action(system: _Of, start: NDArray[np.float64], span: float, turn: float | 
     raise ConvergenceError("the action is not resolved: the motion turns too sharply, or the function has kinks")
 
 
-def _states(system: _Of, start: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def _states(
+    system: _Of, start: NDArray[np.float64], times: NDArray[np.float64], method: str
+) -> NDArray[np.float64]:
     """Give states at times after the first, which is the start's; the times need no order."""
     order = np.argsort(np.abs(times[1:] - times[0]))
-    asked, _ = system._asked(times[1:][order], "gauss16", _RTOL, None, None)
+    asked, _ = system._asked(times[1:][order], method, _RTOL[method], None, None)
     result = system._run(asked, start[None, :], system._values[None, :], 1, progress=False)
     whole(result, "motion")
     states = np.empty((len(order), 2))

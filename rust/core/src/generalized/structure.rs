@@ -31,6 +31,8 @@ pub struct Structure {
     pub autonomous: bool,
     /// Whether Jacobi's integral, or H, is conserved.
     pub conserves_energy: bool,
+    /// Whether a step that is chosen once serves all along: a flow that keeps energy and volume comes to nothing new.
+    pub holds_steps: bool,
     /// The mass matrix.
     pub mass: MassMatrix,
     /// Whether kicks and drifts make a method: accelerations depend on places and time alone, or H = T(p) + V(q, t).
@@ -64,7 +66,7 @@ impl Structure {
         let forced = forces.iter().any(|&force| !graph.is_zero(force));
         let conserves_energy = !has_time(&[source.function])
             && !forced
-            && source.nonholonomic.is_empty()
+            && Self::rolls_without_work(source)
             && !has_time(&source.holonomic);
         let number =
             |index: usize| move |node: &Node| matches!(node, Node::Variable(i) if *i as usize == index);
@@ -81,6 +83,7 @@ impl Structure {
             cyclic: cyclic.collect(),
             autonomous,
             conserves_energy,
+            holds_steps: conserves_energy && source.nonholonomic.is_empty(),
             mass: Self::mass_matrix(model),
             separable,
             nystrom: separable && (second_order || Self::drifts_are_linear(model)),
@@ -162,6 +165,16 @@ impl Structure {
             };
             (id, power) = (base, power * more);
         }
+    }
+
+    /// Whether no velocity at all is allowed by every nonholonomic constraint, so that none drives: what holds a motion to
+    /// such does no work, whether or not it depends on the time. J. I. Neimark & N. A. Fufaev, *Dynamics of Nonholonomic
+    /// Systems* (AMS, 1972), ch. III.
+    fn rolls_without_work(source: &Source) -> bool {
+        let (mut graph, n) = (source.graph.clone(), source.coordinates as u32);
+        let zero = graph.constant(0.0);
+        let still = (n..2 * n).map(|velocity| (graph.variable(velocity), zero)).collect();
+        graph.substitute(&source.nonholonomic, &still).into_iter().all(|driven| graph.is_zero(driven))
     }
 
     fn mass_matrix(model: &Model) -> MassMatrix {

@@ -107,6 +107,7 @@ impl GeneralizedModel {
         result.set_item("cyclic", &found.cyclic)?;
         result.set_item("autonomous", found.autonomous)?;
         result.set_item("conserves_energy", found.conserves_energy)?;
+        result.set_item("holds_steps", found.holds_steps)?;
         let mass = match found.mass {
             MassMatrix::Constant => "constant",
             MassMatrix::Diagonal => "diagonal",

@@ -73,7 +73,7 @@ impl Asked<'_> {
             max_step: self.max_step,
             max_steps: self.max_steps,
             outputs,
-            held: of.structure.conserves_energy,
+            held: of.structure.holds_steps,
         })
     }
 }
