@@ -1,4 +1,4 @@
-"""What holds a motion to velocities that may be zero does no work: the energy is told as conserved, and looked after."""
+"""What holds a motion to velocities that may be zero does no work: the energy is told as conserved, and watched."""
 
 from __future__ import annotations
 

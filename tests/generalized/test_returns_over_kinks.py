@@ -1,4 +1,4 @@
-"""Periods along the motion itself where it has kinks, and where most of it is slow: the steps that a run takes by itself."""
+"""Periods along the motion itself where it has kinks, and where most of it is slow: by the steps that a run takes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_more_than_quadratic_kinetic_energy_beside_an_absolute_value() -> None:
 
 @pytest.mark.parametrize("start", [2.0, 5.0, 6.0, 8.0])
 def test_predators_and_prey_of_every_amplitude(start: float) -> None:
-    """e^x − x + e^p − p (Lotka & Volterra): a fast rise beside a slow decline; refused after 1e5 steps from p = 6 on."""
+    """e^x − x + e^p − p (Lotka & Volterra): fast rises beside slow declines; refused after 1e5 steps from p = 6 on."""
     system = of_one(lambda x, p: np.exp(x) - x + np.exp(p) - p, 0.0, start)
     with mp.workdps(80):
         energy = 1 + mp.exp(mpf(start)) - start

@@ -31,8 +31,8 @@ __all__ = [
     "period_of_hamiltonian",
 ]
 
-#: Of methods that choose their steps at every place, the second finds kinks, and takes few steps where most of the motion
-#: is slow; the first keeps the step of its start, and the energy.
+#: The first keeps the step of its start, and the energy. The second finds kinks, and takes few steps where most of the
+#: motion is slow.
 _HELD, _CHOSEN = "gauss16", ACROSS_KINKS
 _RTOL = {_HELD: 1e-15, _CHOSEN: 1e-14}
 _OF_A_ROTATION = "the period of a rotation is period(turn=2π)"
@@ -216,7 +216,7 @@ def _followed(
     rates: NDArray[np.float64],
     along: tuple[NDArray[np.float64], float, str],
 ) -> dict[str, Any]:
-    """Give the motion for a time by a method, its events where the flow passes a line across it at the start, so far on."""
+    """Give the motion so far on, for a time, by a method, with its passages of a line across the flow at the start."""
     far, span, method = along
     end = system.t0 + span
     # Each number by how fast it changes: of a motion that begins at a turning point the momentum alone does.
@@ -289,9 +289,7 @@ def _action(system: _Of, along: tuple[float, str], turn: float | None) -> float:
     raise ConvergenceError("the action is not resolved: the motion turns too sharply, or the function has kinks")
 
 
-def _states(
-    system: _Of, start: NDArray[np.float64], times: NDArray[np.float64], method: str
-) -> NDArray[np.float64]:
+def _states(system: _Of, start: NDArray[np.float64], times: NDArray[np.float64], method: str) -> NDArray[np.float64]:
     """Give states at times after the first, which is the start's; the times need no order."""
     order = np.argsort(np.abs(times[1:] - times[0]))
     asked, _ = system._asked(times[1:][order], method, _RTOL[method], None, None)
