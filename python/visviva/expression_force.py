@@ -58,7 +58,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     parameters : mapping of symbol or str to float, optional
         The values of what else stands in the expressions. Copies of an ensemble may have their own, by these names.
     bodies : int or str, or array_like of them, shape (M,), optional
-        The bodies on which it acts, by index or name; all if not given.
+        The bodies on which it acts, by index or name; all if not given. With ``collisions="merge"`` an acceleration
+        acts on those of them that remain.
 
     Returns
     -------

@@ -124,7 +124,7 @@ def test_what_is_refused() -> None:
             vv.Scene(particles, vv.ExpressionForce(acceleration=lambda r, v, t: r, bodies=wrong)).run(1.0)  # type: ignore[arg-type]
     merging = vv.Particles([1.0, 1.0], [[0.0, 0, 0], [3, 0, 0]], [[0.0, 0, 0], [-1, 0, 0]], radius=0.5)
     with pytest.raises(vv.InvalidInput, match="tells bodies apart"):
-        vv.Scene(merging, vv.ExpressionForce(acceleration=lambda r, v, t: r, bodies=1)).run(3.0, collisions="merge")
+        vv.Scene(merging, vv.ExpressionForce(force=lambda r, v, t: r, bodies=1)).run(3.0, collisions="merge")
     out = vv.Scene(merging, vv.ExpressionForce(acceleration=lambda r, v, t: [0.0, 0.0, -1.0])).run(
         3.0, collisions="merge"
     )

@@ -18,6 +18,17 @@ POSITION = [[0, 0, 0], [3, 0.05, 0], [0, 4, 0], [-6, 0.3, 0.2]]
 VELOCITY = [[0, 0, 0], [-1, 0, 0], [0, -1.0, 0.02], [0, 0.5, 0]]
 CHARGE = [1.0, -0.5, 0.25, 0.125]
 OBLATE: dict[str, Any] = {"G": 1.0, "axis": [0.1, 0.2, 1.0]}
+
+
+def slowed(bodies: int | list[int]) -> vv.ExpressionForce:
+    """Drag by a gas that turns, on some bodies."""
+    return vv.ExpressionForce(
+        acceleration=lambda r, v, t, rate: [-rate * (v[0] + r[1] / 4), -rate * (v[1] - r[0] / 4), -rate * v[2]],
+        parameters={"rate": 0.2},
+        bodies=bodies,
+    )
+
+
 #: A force on four bodies, and that on bodies 0, 2 and 3 when body 1 is a part of body 0.
 FORCES: dict[str, tuple[vv.forces.Force, vv.forces.Force | None]] = {
     "oblate host": (vv.Oblate(0, J2=0.01, radius=0.5, **OBLATE), vv.Oblate(0, J2=0.01, radius=0.5, **OBLATE)),
@@ -44,6 +55,10 @@ FORCES: dict[str, tuple[vv.forces.Force, vv.forces.Force | None]] = {
         vv.UniformMagneticField([0.1, 0.2, 0.3], CHARGE),
         vv.UniformMagneticField([0.1, 0.2, 0.3], [0.5, 0.25, 0.125]),
     ),
+    # A body goes on as before when others go into it: dragged or not.
+    "an acceleration of parts": (slowed([2, 1]), slowed(1)),
+    "an acceleration of the host": (slowed([0, 1, 3]), slowed([0, 2])),
+    "an acceleration of one that goes": (slowed(1), None),
 }
 each_force = pytest.mark.parametrize("name", FORCES)
 HOW: dict[str, Any] = {"collisions": "merge", "method": "dop853", "rtol": 1e-13}

@@ -116,7 +116,7 @@ fn check_mergers(scene: &Scene) -> Result<()> {
             force.validate(&scene.bodies_of(0))?;
             return refused(format!(
                 "{class} tells bodies apart, and nothing says what one feels that is put together of two; expected \
-                 \"bounce\" or \"stop\", or forces that are the same for all bodies"
+                 \"bounce\" or \"stop\", or forces that are the same for all bodies, or an acceleration of some"
             ));
         }
         let same = matches!(of_remaining, OfRemaining::Same);

@@ -9,6 +9,7 @@ mod kernel;
 use super::Force;
 use super::bodies::{Of, PreciseBodies};
 use super::context::Context;
+use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
@@ -78,6 +79,7 @@ pub static DECLARATION: ForceDeclaration = Declaration {
             Ok(Arc::new(ExpressionForce {
                 gives,
                 bodies: bodies.indices(),
+                values: values.to_vec(),
                 expressions,
                 place: Place {
                     axes,
@@ -159,6 +161,8 @@ struct ExpressionForce {
     gives: Gives,
     /// Those on which it acts, by their places in the scene; none for all.
     bodies: Vec<usize>,
+    /// All that it was made from.
+    values: Vec<Value>,
     expressions: Expressions,
     place: Place,
 }
@@ -267,6 +271,23 @@ impl ForceTerm for ExpressionForce {
     }
     fn names_bodies(&self) -> bool {
         !self.bodies.is_empty()
+    }
+    /// An acceleration is that of whoever remains: on a body into which others have gone it acts if it did before.
+    fn of_remaining(&self, remaining: &Remaining) -> OfRemaining {
+        if self.bodies.is_empty() {
+            return OfRemaining::Same;
+        }
+        let known = self.bodies.iter().all(|&body| body < remaining.places.len());
+        let (true, Gives::Acceleration, Some((_, others))) = (known, self.gives, self.values.split_last())
+        else {
+            return OfRemaining::Unknown;
+        };
+        let there: Vec<usize> =
+            self.bodies.iter().filter_map(|&body| remaining.place_if_there(body)).collect();
+        if there.is_empty() {
+            return OfRemaining::Nothing;
+        }
+        OfRemaining::Values(others.iter().cloned().chain([Value::Indices(there)]).collect())
     }
     fn needs(&self) -> Needs {
         self.expressions.needs
