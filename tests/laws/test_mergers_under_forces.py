@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva._mergers import remaining
 
 GRAVITY = vv.Gravity(1.0)
 TIMES = np.linspace(0.0, 1.8, 10)
@@ -193,3 +194,14 @@ def test_bodies_that_are_not_there_are_told_before_they_merge() -> None:
         for rule in ("merge", "bounce")[: 2 if argument != "charge" else 1]:
             with pytest.raises(vv.InvalidInput, match=rf"^{argument}: expected"):
                 vv.Scene(bodies, force).run(1.0, collisions=rule)
+
+
+@each_force
+def test_where_nobody_is_gone_a_force_is_what_it_was(name: str) -> None:
+    """All values of a force are told again, each in its place."""
+    scene = falling(GRAVITY, FORCES[name][0])
+    again = remaining(scene, np.arange(len(MASS)))
+    here, there = (each.run(t=0.5, method="rk4", dt=0.125) for each in (scene, again))
+    # Relativistic bodies are told in the order of their numbers, so that their pulls add up in another one.
+    np.testing.assert_allclose(here.position, there.position, rtol=1e-14, atol=1e-14)
+    np.testing.assert_allclose(here.energy, there.energy, rtol=1e-14, atol=0)
