@@ -7,7 +7,7 @@ use super::following::{Following, Leaders};
 use super::links::{check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
-use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, OfSource, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -109,18 +109,12 @@ impl Oblate {
         })
     }
 
-    fn law(&self, units: Units) -> Flattening {
-        let harmonics = self.shapes.iter().map(|shape| {
-            let radius = units.take(shape.radius, [1, 0, 0]);
-            let square = radius * radius;
-            [1.5 * shape.j2 * square, 0.625 * shape.j4 * square * square]
-        });
-        Flattening { axis: self.axis, harmonics: harmonics.collect() }
+    fn law(&self) -> Flattening {
+        Flattening { fourth: self.shapes.iter().map(|shape| shape.j4 != 0.0).collect() }
     }
 
     fn sources(&self, context: &Context<'_>) -> Kernel<Flattening> {
-        let constant = context.units.take(self.constant, CONSTANT);
-        Kernel::new(self.law(context.units), &self.bodies, constant, context)
+        Kernel::new(self.law(), self, &self.bodies, context)
     }
 }
 
@@ -141,8 +135,7 @@ impl ForceTerm for Oblate {
         true
     }
     fn following(&self, leaders: &Leaders<'_>) -> Option<Box<dyn Following>> {
-        let constant = leaders.units.take(self.constant, CONSTANT);
-        Some(following(self.law(leaders.units), &self.bodies, constant, leaders))
+        Some(following(self.law(), &self.bodies, leaders))
     }
     fn potential_and_virial(
         &self,
@@ -217,6 +210,11 @@ impl ForceTerm for Oblate {
             number(|shape| shape.j4),
         ])
     }
+    /// Which bodies they are, and what is left out of their kernel.
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        let bodies = self.bodies.iter().map(|&body| body as u64);
+        Some(bodies.chain(self.shapes.iter().map(|shape| u64::from(shape.j4 != 0.0))).collect())
+    }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Nowhere, spin: false, energy: true }
     }
@@ -282,33 +280,44 @@ pub(super) fn sources_act(sources: &[usize], view: &Bodies<'_>) -> bool {
     view.particles > 1 && sources.iter().any(massive)
 }
 
-/// The pull of flattened bodies.
+/// The pull of flattened bodies, whose numbers are their axis; 5, −1 and −2 times 3/2 J2 radius²; and 5/8 J4 radius⁴.
 #[derive(Debug)]
 struct Flattening {
-    axis: [f64; 3],
-    /// 3/2 J2 radius² and 5/8 J4 radius⁴ of each.
-    harmonics: Vec<[f64; 2]>,
+    /// Whether each has a J4.
+    fourth: Vec<bool>,
 }
 
 impl Law for Flattening {
+    type Term = Oblate;
     const VELOCITY: bool = false;
+
+    fn constant(term: &Oblate, units: Units) -> f64 {
+        units.take(term.constant, CONSTANT)
+    }
+
+    fn numbers(term: &Oblate, source: usize, units: Units) -> [f64; 7] {
+        let (shape, [x, y, z]) = (term.shapes[source], term.axis);
+        let radius = units.take(shape.radius, [1, 0, 0]);
+        let square = radius * radius;
+        let second = 1.5 * shape.j2 * square;
+        [x, y, z, 5.0 * second, -second, -2.0 * second, 0.625 * shape.j4 * square * square]
+    }
 
     /// With z = axis·d and s = z/r: GM r⁻⁵ 3/2 J2 R² ((5 s² − 1) d − 2 z axis), and
     /// GM r⁻⁷ 5/8 J4 R⁴ ((63 s⁴ − 42 s² + 3) d − (28 s² − 12) z axis).
     #[inline(always)]
-    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> Pull<S> {
+    fn pull<S: Real>(&self, source: usize, of: &OfSource<S>, relative: &Relative<S>) -> Pull<S> {
         let Relative { d, square: r2, inverse_cube: w, .. } = *relative;
-        let [second, fourth] = self.harmonics[source];
-        let [x, y, z] = [S::splat(self.axis[0]), S::splat(self.axis[1]), S::splat(self.axis[2])];
+        let [x, y, z, five, minus_one, minus_two, fourth] = of.numbers;
         let along = d[2].multiply_add(z, d[1].multiply_add(y, d[0] * x));
         // As few operations as can be wait for r⁻³ one after another.
         let inverse = w * r2;
         let sine = along * inverse;
         let inverse2 = inverse * inverse;
-        let mut radial = (S::splat(5.0 * second) * along * inverse).multiply_add(sine, S::splat(-second));
-        let mut axial = S::splat(-2.0 * second);
-        if fourth != 0.0 {
-            let (square, share) = (sine * sine, S::splat(fourth) * inverse2);
+        let mut radial = (five * along * inverse).multiply_add(sine, minus_one);
+        let mut axial = minus_two;
+        if self.fourth[source] {
+            let (square, share) = (sine * sine, fourth * inverse2);
             let polynomial = S::splat(63.0).multiply_add(square, S::splat(-42.0));
             radial = share.multiply_add(S::splat(3.0), radial);
             radial = (share * square).multiply_add(polynomial, radial);
@@ -320,35 +329,37 @@ impl Law for Flattening {
             radial.multiply_add(d[1], axial * y),
             radial.multiply_add(d[2], axial * z),
         ];
-        Pull { factor: strength * w * inverse2, vector }
+        Pull { factor: of.strength * w * inverse2, vector }
     }
 }
 
 impl WrittenLaw for Flattening {
     fn written(&self, source: usize, of: &Written, graph: &mut Graph) -> [Id; 3] {
-        let [second, fourth] = self.harmonics[source];
+        let [x, y, z, five, minus_one, minus_two, fourth] = of.numbers;
+        let axis = [x, y, z];
         let r2 = graph.dot(of.d, of.d);
-        let terms: Vec<(f64, Id)> = self.axis.into_iter().zip(of.d).collect();
-        let along = graph.sum(0.0, &terms);
+        let along = graph.dot(axis, of.d);
         let [inverse2, fifth] = [-1.0, -2.5].map(|exponent| graph.power(r2, exponent));
         let squared = graph.multiply(along, along);
         let square = graph.multiply(squared, inverse2);
-        let mut radial = graph.sum(-second, &[(5.0 * second, square)]);
-        let mut axial = graph.constant(-2.0 * second);
-        if fourth != 0.0 {
+        let steep = graph.multiply(five, square);
+        let mut radial = graph.add(steep, minus_one);
+        let mut axial = minus_two;
+        if self.fourth[source] {
             let inner = graph.sum(-42.0, &[(63.0, square)]);
             let polynomial = graph.multiply(inner, square);
-            let polynomial = graph.sum(3.0 * fourth, &[(fourth, polynomial)]);
-            let of_axis = graph.sum(12.0 * fourth, &[(-28.0 * fourth, square)]);
-            let [more, more_axial] = [polynomial, of_axis].map(|factor| graph.multiply(inverse2, factor));
+            let polynomial = graph.sum(3.0, &[(1.0, polynomial)]);
+            let of_axis = graph.sum(12.0, &[(-28.0, square)]);
+            let share = graph.multiply(fourth, inverse2);
+            let [more, more_axial] = [polynomial, of_axis].map(|factor| graph.multiply(share, factor));
             radial = graph.add(radial, more);
             axial = graph.add(axial, more_axial);
         }
         let fifth = graph.multiply(of.strength, fifth);
         let axial = graph.multiply(axial, along);
         [0, 1, 2].map(|c| {
-            let along = graph.multiply(radial, of.d[c]);
-            let sum = graph.sum(0.0, &[(1.0, along), (self.axis[c], axial)]);
+            let (along, aside) = (graph.multiply(radial, of.d[c]), graph.multiply(axis[c], axial));
+            let sum = graph.add(along, aside);
             graph.multiply(fifth, sum)
         })
     }

@@ -7,7 +7,7 @@ use super::following::{Following, Leaders};
 use super::oblate::{CONSTANT, check_sources, sources_act};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
-use super::sources::{Kernel, Law, Pull, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, OfSource, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -56,14 +56,8 @@ struct PostNewtonian {
 }
 
 impl PostNewtonian {
-    fn law(&self, units: Units) -> Schwarzschild {
-        let c = units.take(self.c, [1, 0, -1]);
-        Schwarzschild { inverse_square: 1.0 / c / c }
-    }
-
     fn sources(&self, context: &Context<'_>) -> Kernel<Schwarzschild> {
-        let constant = context.units.take(self.constant, CONSTANT);
-        Kernel::new(self.law(context.units), &self.bodies, constant, context)
+        Kernel::new(Schwarzschild, self, &self.bodies, context)
     }
 }
 
@@ -84,8 +78,7 @@ impl ForceTerm for PostNewtonian {
         true
     }
     fn following(&self, leaders: &Leaders<'_>) -> Option<Box<dyn Following>> {
-        let constant = leaders.units.take(self.constant, CONSTANT);
-        Some(following(self.law(leaders.units), &self.bodies, constant, leaders))
+        Some(following(Schwarzschild, &self.bodies, leaders))
     }
     fn potential_and_virial(
         &self,
@@ -120,6 +113,10 @@ impl ForceTerm for PostNewtonian {
         places.dedup();
         OfRemaining::Values(vec![Value::Indices(places), Value::Number(self.constant), Value::Number(self.c)])
     }
+    /// Which bodies they are.
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(self.bodies.iter().map(|&body| body as u64).collect())
+    }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Nowhere, spin: false, energy: false }
     }
@@ -128,22 +125,29 @@ impl ForceTerm for PostNewtonian {
     }
 }
 
-/// The correction to first order.
+/// The correction to first order; its number is 1/c².
 #[derive(Debug)]
-struct Schwarzschild {
-    /// 1/c².
-    inverse_square: f64,
-}
+struct Schwarzschild;
 
 impl Law for Schwarzschild {
+    type Term = PostNewtonian;
     const VELOCITY: bool = true;
 
+    fn constant(term: &PostNewtonian, units: Units) -> f64 {
+        units.take(term.constant, CONSTANT)
+    }
+
+    fn numbers(term: &PostNewtonian, _: usize, units: Units) -> [f64; 7] {
+        let c = units.take(term.c, [1, 0, -1]);
+        [1.0 / c / c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    }
+
     #[inline(always)]
-    fn pull<S: Real>(&self, _: usize, strength: S, relative: &Relative<S>) -> Pull<S> {
+    fn pull<S: Real>(&self, _: usize, of: &OfSource<S>, relative: &Relative<S>) -> Pull<S> {
         let Relative { d, velocity: v, square: r2, inverse_cube: w } = *relative;
         let v2 = v[2].multiply_add(v[2], v[1].multiply_add(v[1], v[0] * v[0]));
         let product = d[2].multiply_add(v[2], d[1].multiply_add(v[1], d[0] * v[0]));
-        let four = S::splat(4.0) * strength;
+        let four = S::splat(4.0) * of.strength;
         // 4 GM/r − v², 1/r being r² r⁻³.
         let radial = four.multiply_add(w * r2, -v2);
         let moving = S::splat(4.0) * product;
@@ -152,7 +156,7 @@ impl Law for Schwarzschild {
             radial.multiply_add(d[1], moving * v[1]),
             radial.multiply_add(d[2], moving * v[2]),
         ];
-        Pull { factor: strength * S::splat(self.inverse_square) * w, vector }
+        Pull { factor: of.strength * of.numbers[0] * w, vector }
     }
 }
 
@@ -163,7 +167,7 @@ impl WrittenLaw for Schwarzschild {
         let inverse = graph.power(r2, -0.5);
         let cube = graph.power(r2, -1.5);
         let strength = graph.product(&[of.strength, cube]);
-        let factor = graph.scale(self.inverse_square, strength);
+        let factor = graph.multiply(of.numbers[0], strength);
         let depth = graph.multiply(of.strength, inverse);
         let radial = graph.sum(0.0, &[(4.0, depth), (-1.0, v2)]);
         let moving = graph.scale(4.0, product);

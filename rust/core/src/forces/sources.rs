@@ -14,8 +14,8 @@ mod series;
 pub(super) use following::following;
 pub(super) use series::{Written, WrittenLaw};
 
-use super::context::{Arrangement, Context, packed_place};
-use super::{Adds, Force, Phase};
+use super::context::{Arrangement, Context, System, packed_place};
+use super::{Adds, Force, ForceTerm, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
@@ -24,15 +24,47 @@ use crate::numerics::real::Real;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::tiered;
+use crate::units::Units;
+
+/// How many numbers of its own a source has, at most.
+const NUMBERS: usize = 7;
 
 /// What a source does to another body.
 pub(super) trait Law: Send + 'static {
+    /// The force of which it is the law: each system has one of its own.
+    type Term: ForceTerm;
     /// Whether it looks at velocities.
     const VELOCITY: bool;
 
-    /// What the source of that place in the list gives to a body; `strength` is the source's gravitational parameter.
+    /// The gravitational constant of a force, in the units of the integration.
+    fn constant(term: &Self::Term, units: Units) -> f64;
+
+    /// The numbers of the source of that place in the list, in those units.
+    fn numbers(term: &Self::Term, source: usize, units: Units) -> [f64; NUMBERS];
+
+    /// What the source of that place in the list gives to a body, by its gravitational parameter and its numbers.
     /// Inlined, and without closures: it is compiled for each tier.
-    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> Pull<S>;
+    fn pull<S: Real>(&self, source: usize, of: &OfSource<S>, relative: &Relative<S>) -> Pull<S>;
+}
+
+/// What a source is, in each lane.
+#[derive(Debug)]
+pub(super) struct OfSource<S> {
+    /// Its gravitational parameter.
+    pub strength: S,
+    pub numbers: [S; NUMBERS],
+}
+
+/// The same, the gravitational parameter first, as it is kept and as parameters of an expression.
+type Told = [Lanes; 1 + NUMBERS];
+
+impl<S: Real> OfSource<S> {
+    #[inline(always)]
+    fn told(all: &[S]) -> Self {
+        let mut numbers = [S::zero(); NUMBERS];
+        numbers.copy_from_slice(&all[1..1 + NUMBERS]);
+        Self { strength: all[0], numbers }
+    }
 }
 
 /// An acceleration, as a product: what waits for it need not wait for both. The factor is zero where r⁻³ is.
@@ -88,8 +120,8 @@ struct Source {
     index: usize,
     /// Its row in a block and lane 0; or if packed, its row and lane.
     place: (usize, usize),
-    /// Its gravitational parameter in each block; in every lane if packed.
-    strength: Vec<Lanes>,
+    /// What it is in each block; in every lane if packed.
+    of: Vec<Told>,
     /// −m/M of every body in its row and lane, zero of the source itself.
     shares: Vec<Lanes>,
     /// If packed, where other bodies are, row after row.
@@ -112,8 +144,8 @@ pub(super) struct Kernel<L> {
 }
 
 impl<L: Law> Kernel<L> {
-    /// Of the bodies of a context that are listed and have mass; `constant` is the gravitational one, in its units.
-    pub(super) fn new(law: L, listed: &[usize], constant: f64, context: &Context<'_>) -> Self {
+    /// Of the bodies of a context that are listed and have mass.
+    pub(super) fn new(law: L, term: &L::Term, listed: &[usize], context: &Context<'_>) -> Self {
         let packed = context.arrangement == Arrangement::Packed;
         let (shape, active) = (context.shape, context.active);
         let bodies = context.first().bodies;
@@ -122,11 +154,18 @@ impl<L: Law> Kernel<L> {
         });
         let sources = slots.map(|(index, slot)| {
             let place = if packed { packed_place(slot, active) } else { (slot, 0) };
-            let of = |mass: &dyn Fn(f64) -> f64| -> Vec<Lanes> {
-                if packed {
-                    return vec![Lanes::splat(mass(context.first().mass[slot]))];
-                }
-                context.in_rows(1, |system, _| mass(system.mass[slot]))
+            let strength = context.per_system(|system| {
+                L::constant(context.own(term, system), context.units) * system.mass[slot]
+            });
+            let numbers: Vec<Vec<Lanes>> = (0..NUMBERS)
+                .map(|number| {
+                    let of =
+                        |system: &System<'_>| L::numbers(context.own(term, system), index, context.units);
+                    context.per_system(|system| of(system)[number])
+                })
+                .collect();
+            let of = |(block, &strength): (usize, &Lanes)| -> Told {
+                core::array::from_fn(|at| at.checked_sub(1).map_or(strength, |number| numbers[number][block]))
             };
             let others = context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 });
             // Some ensemble members may have it without mass: there it does nothing.
@@ -140,7 +179,7 @@ impl<L: Law> Kernel<L> {
                 place,
                 itself: Bits(massive << place.1),
                 lane: [place.1 as i64; WIDTH],
-                strength: of(&|mass| constant * mass),
+                of: strength.iter().enumerate().map(of).collect(),
                 shares,
                 others: others.iter().map(|row| Lanes::zero().less(*row)).collect(),
             }
@@ -180,8 +219,8 @@ fn on_row<V: Vector8 + InverseCube, L: Law>(
     }
     // Where nobody else is, a place that gives a number.
     d[0] = V::select(there, d[0], V::one());
-    let strength = V::load(source.strength[0]);
-    let mut pull = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
+    let of = OfSource::told(V::view(&source.of[0]));
+    let mut pull = kernel.law.pull(source.index, &of, &Relative::new(d, velocity));
     pull.factor = V::select(there, pull.factor, V::zero());
     [pull.acceleration(), pull.reaction(V::load(source.shares[row]))]
 }
@@ -250,7 +289,7 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
             if L::VELOCITY {
                 speed = vector(v, own, rows, components);
             }
-            let strength = V::load(source.strength[block]);
+            let of = OfSource::told(V::view(&source.of[block]));
             let shares = V::view(&source.shares);
             let mut sum = [V::zero(); 3];
             for first in (0..bodies).step_by(WIDTH) {
@@ -266,7 +305,7 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                         velocity = difference(vector(v, at, rows, components), speed);
                     }
                     let d = difference(vector(q, at, rows, components), place);
-                    let pull = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
+                    let pull = kernel.law.pull(source.index, &of, &Relative::new(d, velocity));
                     let (term, reaction) = (pull.acceleration(), pull.reaction(shares[at]));
                     for c in 0..components {
                         a[c * rows + at] += term[c];

@@ -1,6 +1,6 @@
 //! One source beside gravity between few bodies, which has found r⁻³ of all pairs.
 
-use super::{Kernel, Law, Relative, Source, difference, squared};
+use super::{Kernel, Law, OfSource, Relative, Source, difference, squared};
 use crate::forces::context::Context;
 use crate::forces::gravity::beside::{Beside, beside};
 use crate::forces::gravity::ring::Turns;
@@ -72,7 +72,7 @@ impl<L: Law> Beside for OneSource<L> {
         let velocity = difference(speed, own_speed);
         let relative = Relative { d, velocity, square: squared(d), inverse_cube };
         // Where the source itself is, or nobody, r⁻³ is zero.
-        let pull = self.law.pull(source.index, V::load(source.strength[0]), &relative);
+        let pull = self.law.pull(source.index, &OfSource::told(V::view(&source.of[0])), &relative);
         let (mut term, reaction) = (pull.acceleration(), pull.reaction(V::load(source.shares[0])));
         for c in 0..3 {
             term[c] = V::select(source.itself, reaction[c].sum_in_every_lane(), term[c]);

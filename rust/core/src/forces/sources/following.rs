@@ -3,7 +3,7 @@
 //! Canonical order: as for other bodies, one source after another as they are listed.
 
 use super::series::recurrences;
-use super::{Law, Relative, WrittenLaw, difference, vector};
+use super::{Law, NUMBERS, OfSource, Relative, Told, WrittenLaw, difference, vector};
 use crate::error::{Error, Result};
 use crate::expressions::series::Expansion;
 use crate::forces::ForceTerm;
@@ -13,6 +13,7 @@ use crate::numerics::lanes::{Bits, Lanes};
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::units::Units;
+use core::any::Any;
 
 /// A source among the massive bodies.
 struct Leader {
@@ -21,48 +22,51 @@ struct Leader {
     slot: usize,
     /// The coefficients of what it does, of a method that asks for them.
     pair: Option<Expansion<Lanes>>,
+    /// What it is in each lane.
+    of: Told,
 }
 
 /// The sources that massless bodies follow.
 struct Leading<L> {
     law: L,
-    /// The gravitational constant, in the units of the integration.
-    constant: f64,
     leaders: Vec<Leader>,
-    /// Their gravitational parameters.
-    strength: Vec<Lanes>,
 }
 
-/// Of the massive bodies those that are listed; `constant` is the gravitational one, in the units of the integration.
+/// Of the massive bodies those that are listed.
 pub(in crate::forces) fn following<L: WrittenLaw>(
     law: L,
     listed: &[usize],
-    constant: f64,
     massive: &Leaders<'_>,
 ) -> Box<dyn Following> {
     let slots = listed.iter().enumerate().filter_map(|(index, body)| {
         massive.bodies.iter().position(|other| other == body).map(|slot| (index, slot))
     });
+    let nothing = [Lanes::zero(); 1 + NUMBERS];
     let leader = |(index, slot)| Leader {
         index,
         slot,
+        of: nothing,
         pair: if massive.expands {
-            recurrences(&law, index).map(|series| Expansion::new(series, &[Lanes::zero()]))
+            recurrences(&law, index).map(|series| Expansion::new(series, &nothing))
         } else {
             None
         },
     };
     let leaders: Vec<Leader> = slots.map(leader).collect();
-    Box::new(Leading { strength: vec![Lanes::zero(); leaders.len()], leaders, constant, law })
+    Box::new(Leading { leaders, law })
 }
 
 impl<L: WrittenLaw> Following for Leading<L> {
-    /// Only copies with the very same force share lanes, so the constant is that of all.
-    fn lead(&mut self, _: &dyn ForceTerm, _: Units, mass: &[f64], lanes: Bits) {
-        for (leader, strength) in self.leaders.iter_mut().zip(&mut self.strength) {
-            *strength = Lanes::select(lanes, Lanes::splat(self.constant * mass[leader.slot]), *strength);
-            if let Some(pair) = &mut leader.pair {
-                pair.set_parameters(&[*strength]);
+    fn lead(&mut self, own: &dyn ForceTerm, units: Units, mass: &[f64], lanes: Bits) {
+        let Some(own) = (own as &dyn Any).downcast_ref::<L::Term>() else { return };
+        let constant = L::constant(own, units);
+        for Leader { index, slot, pair, of } in &mut self.leaders {
+            let own = [constant * mass[*slot]].into_iter().chain(L::numbers(own, *index, units));
+            for (before, number) in of.iter_mut().zip(own) {
+                *before = Lanes::select(lanes, Lanes::splat(number), *before);
+            }
+            if let Some(pair) = pair {
+                pair.set_parameters(of);
             }
         }
     }
@@ -138,7 +142,7 @@ fn pull<V: View<Lanes>, L: Law, const COMPONENTS: usize>(pull: Pull<'_, L>) {
     let Massive { places, velocities } = pull.massive;
     let (places, velocities) = (V::view(places), V::view(velocities));
     let (q, v, a) = (V::view(pull.q), V::view(pull.v), V::view_mut(pull.a));
-    let (leaders, strength) = (&pull.of.leaders[..], V::view(&pull.of.strength));
+    let leaders = &pull.of.leaders[..];
     let stride = places.len() / COMPONENTS;
     let place = vector(q, 0, 1, COMPONENTS);
     let mut speed = [V::zero(); 3];
@@ -149,14 +153,15 @@ fn pull<V: View<Lanes>, L: Law, const COMPONENTS: usize>(pull: Pull<'_, L>) {
     if !pull.first {
         sum = vector(a, 0, 1, COMPONENTS);
     }
-    for i in 0..strength.len() {
-        let Leader { index, slot, .. } = leaders[i];
+    for i in 0..leaders.len() {
+        let Leader { index, slot, ref of, .. } = leaders[i];
         let d = difference(place, vector(places, slot, stride, COMPONENTS));
         let mut velocity = [V::zero(); 3];
         if L::VELOCITY {
             velocity = difference(speed, vector(velocities, slot, stride, COMPONENTS));
         }
-        let term = pull.of.law.pull(index, strength[i], &Relative::new(d, velocity)).acceleration();
+        let term =
+            pull.of.law.pull(index, &OfSource::told(V::view(of)), &Relative::new(d, velocity)).acceleration();
         for c in 0..3 {
             sum[c] += term[c];
         }

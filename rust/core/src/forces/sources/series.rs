@@ -3,7 +3,7 @@
 //! The one idea: a law that is written as an expression of where a body is and how it moves, relative to a source, has
 //! recurrences, and each pair its own coefficients. They are added up as the forces are (see [`sources`](super)).
 
-use super::{Kernel, Law};
+use super::{Kernel, Law, NUMBERS};
 use crate::error::Result;
 use crate::expressions::graph::{Graph, Id};
 use crate::expressions::program::Output;
@@ -17,7 +17,7 @@ use crate::ode::series::Jet;
 use crate::parallel::Ticker;
 use std::sync::Arc;
 
-/// What the recurrences of a law are of: three coordinates, then three velocities; and the gravitational parameter.
+/// What the recurrences of a law are of: three coordinates, then three velocities.
 const VARIABLES: u32 = 6;
 
 /// A place and a velocity relative to a source, as nodes of an expression.
@@ -25,6 +25,8 @@ pub(in super::super) struct Written {
     pub(in super::super) d: [Id; 3],
     pub(in super::super) velocity: [Id; 3],
     pub(in super::super) strength: Id,
+    /// Those of the source.
+    pub(in super::super) numbers: [Id; NUMBERS],
 }
 
 /// A law that can be written as an expression.
@@ -33,7 +35,7 @@ pub(in super::super) trait WrittenLaw: Law {
     fn written(&self, source: usize, of: &Written, graph: &mut Graph) -> [Id; 3];
 }
 
-/// The recurrences of what a source does, with its gravitational parameter; nothing if the expression is too large.
+/// The recurrences of what a source does, what it is being its parameters; nothing if the expression is too large.
 pub(super) fn recurrences<L: WrittenLaw>(law: &L, source: usize) -> Option<Arc<Recurrences>> {
     let mut graph = Graph::default();
     let mut variables = (0..VARIABLES).map(|index| graph.variable(index));
@@ -41,9 +43,10 @@ pub(super) fn recurrences<L: WrittenLaw>(law: &L, source: usize) -> Option<Arc<R
         d: [variables.next()?, variables.next()?, variables.next()?],
         velocity: [variables.next()?, variables.next()?, variables.next()?],
         strength: graph.parameter(0),
+        numbers: core::array::from_fn(|number| graph.parameter(1 + number as u32)),
     };
     let outputs = law.written(source, &of, &mut graph).map(Output::Node);
-    Recurrences::new(&graph, (VARIABLES as usize, 1), &[], &outputs).ok().map(Arc::new)
+    Recurrences::new(&graph, (VARIABLES as usize, 1 + NUMBERS), &[], &outputs).ok().map(Arc::new)
 }
 
 impl<L: WrittenLaw> Kernel<L> {
@@ -55,7 +58,7 @@ impl<L: WrittenLaw> Kernel<L> {
             let of_block = self.shape.rows / self.blocks.max(1);
             pairs.push(
                 (0..self.shape.rows)
-                    .map(|row| Expansion::new(series.clone(), &[source.strength[row / of_block]]))
+                    .map(|row| Expansion::new(series.clone(), &source.of[row / of_block]))
                     .collect(),
             );
         }
