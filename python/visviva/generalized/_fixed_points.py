@@ -43,6 +43,13 @@ if TYPE_CHECKING:
 
 __all__ = ["FOUND", "fixed_points", "rounding_of_slopes", "slopes_at"]
 
+#: Directions between those in which H is level, how far along them it is looked at, in sizes of a state, and Newton's
+#: steps from there to the ground of a valley.
+_DIRECTIONS = 8
+_FAR_ALONG = (0.01, -0.01, 0.1, -0.1)
+_STEPS_TO_THE_GROUND = 8
+#: There slopes along it are so many times those across.
+_ON_THE_GROUND = 10.0
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
 _ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
@@ -186,7 +193,7 @@ def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64]
     frequencies = np.sort(np.abs(values.imag[values.imag > least]))
     stable = bool((values.real <= _ON_THE_AXIS * largest).all())
     if stable and not (values.real < -_ON_THE_AXIS * largest).all():
-        by_energy = _by_energy(energy, state, about, off) if about is not None and level else None
+        by_energy = _by_energy(energy, state, about, off, size) if about is not None and level else None
         # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
         own = bool(largest > 0.0) and bool(np.linalg.svd(vectors, compute_uv=False)[-1] > _ON_THE_AXIS)
         stable = own if by_energy is None else by_energy
@@ -272,7 +279,9 @@ def _energy(system: Hamiltonian) -> Energy:
     return Energy(slopes, sizes)
 
 
-def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64]) -> bool | None:
+def _by_energy(
+    energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64], size: NDArray[np.float64]
+) -> bool | None:
     """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known.
 
     Where it stays level are equilibria, too: that a motion drifts along them does not count, as along a coordinate that
@@ -282,4 +291,31 @@ def _by_energy(energy: Energy, state: NDArray[np.float64], about: Curvatures, of
     if len(known) > 1:
         return None
     beside = set(rises(energy, state, about, off))
-    return not {-1.0, 1.0} <= known | beside
+    if {-1.0, 1.0} <= known | beside:
+        return False
+    # Nothing that is seen is not yet nothing that is there.
+    falls = 0.0 in beside and _falls(energy, state, about, size, -1.0 if -1.0 in known | beside else 1.0)
+    return None if falls else True
+
+
+def _falls(
+    energy: Energy, state: NDArray[np.float64], about: Curvatures, size: NDArray[np.float64], upwards: float
+) -> bool:
+    """Whether H falls along the ground of a valley, some way in a direction in which it is level, or rises from a hill."""
+    level = about.values == 0.0
+    along, others = about.vectors[:, level], about.vectors[:, ~level]
+    mixed = np.random.default_rng(0).normal(size=(along.shape[1], _DIRECTIONS))
+    ways = along @ np.concatenate([np.eye(along.shape[1]), mixed], axis=1)
+    ways = ways * (1.0 / np.abs(ways / size[:, None]).max(axis=0))
+    ahead = np.concatenate([part * ways.T for part in _FAR_ALONG])
+    places = state + ahead
+    with np.errstate(all="ignore"):
+        for _ in range(_STEPS_TO_THE_GROUND):
+            slopes, second = energy.slopes(places)
+            across = np.linalg.pinv(others.T @ np.where(np.isfinite(second), second, 0.0) @ others)
+            places = places - np.einsum("ai,sij,bj,sb->sa", others, across, others, slopes)
+        slopes, _ = energy.slopes(places)
+        rise = upwards * (slopes * ahead).sum(axis=1)
+        left = np.abs(slopes @ others).max(axis=1, initial=0.0) * np.abs(ahead @ about.vectors).max(axis=1)
+        falls = (rise < -_ON_THE_GROUND * left) & ~round_off(energy, places, size).all(axis=1)
+        return bool(falls.any())

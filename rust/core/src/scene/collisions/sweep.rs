@@ -1,10 +1,25 @@
 //! Which boxes meet: sorted along the axis on which they are spread most, each is compared with those that begin within it.
 
+/// So few boxes are compared each with each other: to sort them would take longer.
+const FEW: usize = 12;
+
 /// A body's box, low and high along three axes, and its index.
 type Boxed = ([[f64; 2]; 3], usize);
 
 /// Calls for each pair of boxes (low and high along three axes) that meet, one of which is a sphere's.
 pub fn swept(boxes: &[[[f64; 2]; 3]], is_sphere: impl Fn(usize) -> bool, mut each: impl FnMut(usize, usize)) {
+    let meet =
+        |a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]| (0..3).all(|c| a[c][0] <= b[c][1] && b[c][0] <= a[c][1]);
+    if boxes.len() <= FEW {
+        for (i, own) in boxes.iter().enumerate() {
+            for (j, other) in boxes.iter().enumerate().take(i) {
+                if meet(own, other) && (is_sphere(i) || is_sphere(j)) {
+                    each(j, i);
+                }
+            }
+        }
+        return;
+    }
     let spread = |axis: usize| {
         let low = boxes.iter().fold(f64::MAX, |low, own| low.min(own[axis][0]));
         boxes.iter().fold(f64::MIN, |high, own| high.max(own[axis][0])) - low
@@ -24,7 +39,7 @@ pub fn swept(boxes: &[[[f64; 2]; 3]], is_sphere: impl Fn(usize) -> bool, mut eac
     let mut those_that_begin_in = |one: &Boxed, others: &[Boxed]| {
         let (own, index) = one;
         for (other, to) in others.iter().take_while(|(other, _)| other[axis][0] <= own[axis][1]) {
-            if (0..3).all(|c| own[c][0] <= other[c][1] && other[c][0] <= own[c][1]) {
+            if meet(own, other) {
                 each(*index, *to);
             }
         }

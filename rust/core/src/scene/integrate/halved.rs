@@ -84,11 +84,12 @@ pub(super) fn pays(job: &Job<'_>, steps: u64) -> bool {
     let each = job.scene.particles as u64 + plan.pairs_per_evaluation();
     let few = each.saturating_mul(job.scene.copies as u64) <= FEW;
     let comes_to_rest = matches!(plan.method.scheme, Scheme::RungeKutta(_));
+    // Last, as it looks at all bodies, for each of the thousands of chunks that as many may make.
     let untold =
-        matches!(plan.energy, Energy::Unknown | Energy::Driven) || job.scene.masses(0).contains(&0.0);
+        || matches!(plan.energy, Energy::Unknown | Energy::Driven) || job.scene.masses(0).contains(&0.0);
     // A leg between two collisions is no run.
     let is_run = !plan.touching && !plan.turning.steps() && steps > 0;
-    is_run && (comes_to_rest || untold) && (few || steps >= MANY_STEPS)
+    is_run && (few || steps >= MANY_STEPS) && (comes_to_rest || untold())
 }
 
 /// Tells in the reports of units that have come to the end, in the state `end` at `node`, what does not resolve them. The
