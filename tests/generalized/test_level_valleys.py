@@ -66,7 +66,7 @@ def test_of_a_whole_search_all_but_the_hill_are_stable(potential: Callable[[Any]
 
 @pytest.mark.parametrize("scale", [1e-8, 1.0, 1e4, 1e6])
 def test_peanos_surface_has_one_equilibrium(scale: float) -> None:
-    """Least along every straight line through the origin, and falling between two parabolas, however steep it is aside."""
+    """Least along every straight line through the origin, and falling between two parabolas, however steep aside."""
     system = by_momenta(lambda q: scale * (q[1] - q[0] ** 2) * (q[1] - 3 * q[0] ** 2), 2)
     for form in (system, system.lagrangian()):
         (found,) = form.equilibria()

@@ -31,7 +31,8 @@ def test_two_quarks_on_a_string() -> None:
     for system in (string, by_velocity):
         # The tolerance of steps on either side of each kink.
         assert system.period() == pytest.approx(4 * largest, rel=1e-12, abs=0)
-        assert system.action_variable() == pytest.approx(area / (2 * np.pi), rel=1e-12, abs=0)
+        # Between its steps a method is not as exact as at them, where they end at a kink.
+        assert system.action_variable() == pytest.approx(area / (2 * np.pi), rel=1e-11, abs=0)
 
 
 def test_more_than_quadratic_kinetic_energy_beside_an_absolute_value() -> None:
@@ -41,7 +42,7 @@ def test_more_than_quadratic_kinetic_energy_beside_an_absolute_value() -> None:
     assert system.period() == pytest.approx(4 * largest, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("start", [2.0, 5.0, 6.0, 8.0])
+@pytest.mark.parametrize("start", [2.0, 5.0, 6.0, 7.0, 8.0, 10.0])
 def test_predators_and_prey_of_every_amplitude(start: float) -> None:
     """e^x − x + e^p − p (Lotka & Volterra): fast rises beside slow declines; refused after 1e5 steps from p = 6 on."""
     system = of_one(lambda x, p: np.exp(x) - x + np.exp(p) - p, 0.0, start)
@@ -62,10 +63,20 @@ def test_predators_and_prey_of_every_amplitude(start: float) -> None:
             pace = (high - low) / 2 * mp.pi / 2 * mp.cosh(s) / mp.cosh(u) ** 2
             return pace * (1 / (mp.exp(branch(left, -1)) - 1) - 1 / (mp.exp(branch(left, 0)) - 1))
 
+        def height(s: Any) -> Any:
+            """(p₊ − p₋) dx/ds, which adds up to the area."""
+            u = mp.pi / 2 * mp.sinh(s)
+            x = (low + high) / 2 + (high - low) / 2 * mp.tanh(u)
+            left = energy - mp.exp(x) + x
+            pace = (high - low) / 2 * mp.pi / 2 * mp.cosh(s) / mp.cosh(u) ** 2
+            return pace * (branch(left, -1) - branch(left, 0))
+
         step = mpf(1) / 64
-        expected = float(step * sum(slowness(k * step) for k in range(-250, 251)))
+        expected, area = (float(step * sum(each(k * step) for k in range(-250, 251))) for each in (slowness, height))
     # What a relative 1e-16 of p makes of e^p, at the fastest place.
     assert system.period() == pytest.approx(expected, rel=1e-10, abs=0)
+    # The rise lasts a millionth of the period: between two nodes of a quadrature it was missed.
+    assert system.action_variable() == pytest.approx(area / (2 * np.pi), rel=1e-9, abs=0)
 
 
 def test_a_section_takes_the_steps_that_a_run_takes() -> None:

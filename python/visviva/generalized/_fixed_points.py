@@ -301,7 +301,7 @@ def _by_energy(
 def _falls(
     energy: Energy, state: NDArray[np.float64], about: Curvatures, size: NDArray[np.float64], upwards: float
 ) -> bool:
-    """Whether H falls along the ground of a valley, some way in a direction in which it is level, or rises from a hill."""
+    """Whether H falls along the ground of a valley, some way in a level direction, or rises along that of a hill."""
     level = about.values == 0.0
     along, others = about.vectors[:, level], about.vectors[:, ~level]
     mixed = np.random.default_rng(0).normal(size=(along.shape[1], _DIRECTIONS))

@@ -46,6 +46,8 @@ _MOST_STEPS = 100_000
 _PANELS = 4
 _MOST_HALVINGS = 40
 _RESOLVED = 4e-15
+#: What rates may miss of how far a motion goes in a panel, as a part of how far it goes in all.
+_ADDS_UP = 1e-8
 #: What the last digits of the start may change of a period, and what is the same after a turn, as in the core.
 _KNOWN = 1e-9
 _REPEATS = 1e-9
@@ -255,11 +257,12 @@ def _action(system: _Of, along: tuple[float, str], turn: float | None) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     center = None
 
-    def integrals(edges: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Of ∫ p q̇ dt between pairs of parts of the period (N, 2)."""
+    def integrals(edges: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Of ∫ p q̇ dt between pairs of parts of the period (N, 2), and whether the rates add up to how far it goes."""
         nonlocal center
         middle, half = edges.mean(axis=1)[:, None], 0.5 * np.diff(edges, axis=1)
-        parts = (middle + half * nodes).ravel()
+        inside = len(edges) * _GAUSS
+        parts = np.concatenate([(middle + half * nodes).ravel(), edges.ravel()])
         times = system.t0 + span * np.append(0.0, parts)
         states = _states(system, start, times, method)
         rates = _rates_at(system, times[1:], states)
@@ -269,18 +272,23 @@ def _action(system: _Of, along: tuple[float, str], turn: float | None) -> float:
         if center is None:
             # ∮ dq = 0: what a large constant momentum would cancel is left out.
             center = float(0.5 * (momenta.max() + momenta.min())) if turn is None else 0.0
-        found: NDArray[np.float64] = ((momenta - center) * rates[:, 0]).reshape(-1, _GAUSS) @ weights
-        return found * half[:, 0] * abs(span)
+        found: NDArray[np.float64] = ((momenta - center) * rates[:, 0])[:inside].reshape(-1, _GAUSS) @ weights
+        # A burst between two nodes leaves its trace.
+        gone = np.einsum("ngs,g->ns", rates[:inside].reshape(-1, _GAUSS, 2), weights) * half * span
+        ends = states[inside:].reshape(-1, 2, 2)
+        size = np.ptp(states, axis=0) + _RESOLVED * np.abs(states).max(axis=0)
+        whole: NDArray[np.bool_] = (np.abs(gone - (ends[:, 1] - ends[:, 0])) <= _ADDS_UP * size).all(axis=1)
+        return found * half[:, 0] * abs(span), whole
 
     ends = np.linspace(0.0, 1.0, _PANELS + 1)
     edges = np.stack([ends[:-1], ends[1:]], axis=1)
-    whole, done = integrals(edges), 0.0
+    (whole, _), done = integrals(edges), 0.0
     size = float(np.abs(whole).sum())
     for _ in range(_MOST_HALVINGS):
         middle = edges.mean(axis=1)
         halves = np.stack([np.stack([edges[:, 0], middle], axis=1), np.stack([middle, edges[:, 1]], axis=1)], axis=1)
-        parts = integrals(halves.reshape(-1, 2)).reshape(-1, 2)
-        rough = np.abs(parts.sum(axis=1) - whole) > _RESOLVED * size
+        parts, adds_up = (each.reshape(-1, 2) for each in integrals(halves.reshape(-1, 2)))
+        rough = (np.abs(parts.sum(axis=1) - whole) > _RESOLVED * size) | ~adds_up.all(axis=1)
         done += float(parts[~rough].sum())
         if not rough.any():
             action = done / (2.0 * np.pi)
