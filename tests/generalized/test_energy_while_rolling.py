@@ -9,16 +9,15 @@ import pytest
 
 import visviva as vv
 
-START: dict[str, Any] = {"position": [0.0, 0.0, 0.3], "velocity": [np.cos(0.3), np.sin(0.3), 2.0]}
 
-
-def edge(constraint: Any, potential: Any = lambda q: 3.0 * q[0]) -> vv.Lagrangian:
+def edge(constraint: Any, velocity: Any = (1.0, 0.0, 2.0), potential: Any = lambda q: 3.0 * q[0]) -> vv.Lagrangian:
     """A knife edge on an incline, which goes where its constraint lets it."""
     return vv.Lagrangian(
         lambda q, v, t: (v[0] ** 2 + v[1] ** 2 + v[2] ** 2 / 2) / 2 - potential(q),
         ["x", "y", "angle"],
         nonholonomic=[constraint],
-        **START,
+        position=[0.0, 0.0, 0.0],
+        velocity=velocity,
     )
 
 
@@ -46,26 +45,14 @@ def test_a_knife_edge_keeps_its_energy() -> None:
 
 
 def test_also_where_the_edge_turns_with_the_time() -> None:
-    blade = vv.Lagrangian(
-        lambda q, v, t: (v[0] ** 2 + v[1] ** 2 + v[2] ** 2 / 2) / 2 - 3.0 * q[0],
-        ["x", "y", "angle"],
-        nonholonomic=[turning],
-        position=[0.0, 0.0, 0.0],
-        velocity=[1.0, 0.0, 2.0],
-    )
+    blade = edge(turning)
     assert "energy" in blade.conserved
     run = blade.run(t=np.linspace(0.0, 10.0, 11))
     np.testing.assert_allclose(run.energy, run.energy[0], rtol=0, atol=1e-11)
 
 
 def test_not_where_it_is_driven() -> None:
-    blade = vv.Lagrangian(
-        lambda q, v, t: (v[0] ** 2 + v[1] ** 2 + v[2] ** 2 / 2) / 2 - 3.0 * q[0],
-        ["x", "y", "angle"],
-        nonholonomic=[driven],
-        position=[0.0, 0.0, 0.0],
-        velocity=[1.0, 0.5, 2.0],
-    )
+    blade = edge(driven, (1.0, 0.5, 2.0))
     assert "energy" not in blade.conserved
     run = blade.run(t=np.linspace(0.0, 10.0, 11))
     assert "energy" not in run.conservation()
@@ -75,4 +62,4 @@ def test_not_where_it_is_driven() -> None:
 def test_steps_too_long_for_it_are_told() -> None:
     """Without a quantity that is kept nothing told that equal steps resolve nothing."""
     with pytest.warns(vv.AccuracyWarning):
-        edge(along, lambda q: 40.0 * np.sin(5.0 * q[0])).run(t=10.0, method="rk4", dt=0.25)
+        edge(along, potential=lambda q: 40.0 * np.sin(5.0 * q[0])).run(t=10.0, method="rk4", dt=0.25)

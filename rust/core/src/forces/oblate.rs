@@ -7,7 +7,7 @@ use super::following::{Following, Leaders};
 use super::links::{check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
-use super::sources::{Kernel, Law, OfSource, Pull, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, NUMBERS, OfSource, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -295,7 +295,7 @@ impl Law for Flattening {
         units.take(term.constant, CONSTANT)
     }
 
-    fn numbers(term: &Oblate, source: usize, units: Units) -> [f64; 7] {
+    fn numbers(term: &Oblate, source: usize, units: Units) -> [f64; NUMBERS] {
         let (shape, [x, y, z]) = (term.shapes[source], term.axis);
         let radius = units.take(shape.radius, [1, 0, 0]);
         let square = radius * radius;

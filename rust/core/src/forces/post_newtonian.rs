@@ -7,7 +7,7 @@ use super::following::{Following, Leaders};
 use super::oblate::{CONSTANT, check_sources, sources_act};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
-use super::sources::{Kernel, Law, OfSource, Pull, Relative, Written, WrittenLaw, following};
+use super::sources::{Kernel, Law, NUMBERS, OfSource, Pull, Relative, Written, WrittenLaw, following};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::graph::{Graph, Id};
@@ -137,9 +137,11 @@ impl Law for Schwarzschild {
         units.take(term.constant, CONSTANT)
     }
 
-    fn numbers(term: &PostNewtonian, _: usize, units: Units) -> [f64; 7] {
+    fn numbers(term: &PostNewtonian, _: usize, units: Units) -> [f64; NUMBERS] {
         let c = units.take(term.c, [1, 0, -1]);
-        [1.0 / c / c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+        let mut numbers = [0.0; NUMBERS];
+        numbers[0] = 1.0 / c / c;
+        numbers
     }
 
     #[inline(always)]

@@ -27,7 +27,7 @@ use crate::tiered;
 use crate::units::Units;
 
 /// How many numbers of its own a source has, at most.
-const NUMBERS: usize = 7;
+pub(super) const NUMBERS: usize = 7;
 
 /// What a source does to another body.
 pub(super) trait Law: Send + 'static {

@@ -14,6 +14,7 @@ mod contacts;
 mod inside;
 mod nearest;
 mod search;
+mod touching;
 mod turns;
 
 use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What};
@@ -29,7 +30,6 @@ pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use contacts::{Contacts, Pair};
-use search::{Search, Zero};
 
 /// A zero that was found.
 #[derive(Clone, Debug)]
@@ -314,13 +314,6 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// The search for the zeros of an event in the step that was come to the end of.
-    fn search<'s>(&'s mut self, unit: &'s Prepared, event: usize, span: Span) -> Search<'s, 'a> {
-        let shift = self.shift(event);
-        let ends = [self.sights[event].value + shift, self.next[event].value + shift];
-        Search { watch: self, unit, event, span, ends, shift }
-    }
-
     fn go_on(&mut self) {
         core::mem::swap(&mut self.before, &mut self.after);
         core::mem::swap(&mut self.sights, &mut self.next);
@@ -339,30 +332,7 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.ask(step, ticker)?;
-        let mut zeros: Vec<(Zero, usize)> = Vec::new();
-        let mut suspects = core::mem::take(&mut self.suspects);
-        let pairs = suspects.partition_point(|&event| event < self.events.len());
-        if suspects.len() - pairs > 1 {
-            suspects[pairs..].sort_by_cached_key(|&event| {
-                let soonest = self.search(unit, event, span).soonest();
-                soonest.max(0.0).to_bits()
-            });
-        }
-        // The run ends where spheres touch: who does so later does not.
-        let mut first = 1.0;
-        for event in suspects {
-            let is_pair = event >= self.events.len();
-            let mut search = self.search(unit, event, span);
-            if is_pair && first < 1.0 && search.is_clear_until(first, ticker)? {
-                continue;
-            }
-            let found = search.zeros(step, ticker)?;
-            if is_pair && let Some(&(theta, _)) = found.first() {
-                first = theta.min(first);
-            }
-            zeros.extend(found.into_iter().map(|zero| (zero, event)));
-        }
-        zeros.sort_by(|(a, i), (b, j)| a.0.total_cmp(&b.0).then(i.cmp(j)));
+        let zeros = self.zeros_in_step(unit, span, step, ticker)?;
         for (place, &((theta, _), event)) in zeros.iter().enumerate() {
             // Of the state nothing is lost to the rounding of the time.
             let elapsed = scale(span.at(theta), self.job.plan.units.time);

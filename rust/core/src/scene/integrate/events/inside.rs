@@ -1,6 +1,8 @@
 //! The bodies that events look at, inside a step: on the polynomials of an adaptive method, on cubics through both ends, or in
 //! the state of a shadow step.
 
+use super::super::super::events::Sight;
+use super::search::Search;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
 use crate::numerics::double_double::two_sum;
@@ -52,5 +54,59 @@ impl Watch<'_> {
             }
             self.inside[body] = moving;
         }
+    }
+}
+
+impl Search<'_, '_> {
+    /// As [`value_at`](Self::value_at), and what is known of the ends.
+    pub(super) fn value_on_solution(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        match theta {
+            0.0 => Ok(self.ends[0]),
+            1.0 => Ok(self.ends[1]),
+            theta => self.value_at(theta, step, ticker),
+        }
+    }
+
+    /// On the polynomial, or on the solution where there is none.
+    pub(super) fn value_at(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        Ok(self.sight_at(theta, step, ticker)?.value)
+    }
+
+    pub(super) fn sight_at(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Sight> {
+        if self.watch.terms.is_empty() || self.watch.settles {
+            let state = step.at(theta, ticker)?;
+            self.watch.bodies.read(state, &mut self.watch.inside);
+            self.sight_inside(theta, ticker)
+        } else {
+            self.sight_between(theta, ticker)
+        }
+    }
+
+    /// On the polynomial, or on the cubics where there is none.
+    pub(super) fn sight_between(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
+        self.watch.place(self.event, self.unit.shape.components, self.span, theta);
+        self.sight_inside(theta, ticker)
+    }
+
+    pub(super) fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
+        let bodies = (&self.watch.inside[..], self.span.at(theta));
+        let mut sight = self.watch.sight(self.unit, self.event, bodies, ticker)?;
+        sight.value += self.shift;
+        Ok(sight)
     }
 }

@@ -1,9 +1,9 @@
 //! The zeros of one event in one step: the function is sampled along it; where it changes its sign, or comes near zero and
 //! turns, the zero is located on the solution itself.
 
-use super::super::super::events::{Sight, What, dot};
+use super::super::super::events::{What, dot};
 use super::super::super::unit::Prepared;
-use super::clear::{cubic, cubic_at, is_straight, keeps_clear_after_all};
+use super::clear::{cubic, cubic_at, is_straight};
 use super::nearest::around;
 use super::turns::turns;
 use super::{Interpolant, Span, Watch};
@@ -51,7 +51,7 @@ pub(super) fn crosses(start: f64, end: f64) -> bool {
 }
 
 /// How fast a function goes from one end of a bracket to the other.
-fn slope_of([from, to]: Bracket) -> f64 {
+pub(super) fn slope_of([from, to]: Bracket) -> f64 {
     (to.1 - from.1) / (to.0 - from.0)
 }
 
@@ -266,47 +266,9 @@ impl Search<'_, '_> {
         [(0.0, self.ends[0]), (1.0, self.ends[1])]
     }
 
-    /// Whether it is looked for spheres that touch, for the first time in the step alone.
-    fn is_contact(&self) -> bool {
-        self.event >= self.watch.events.len()
-    }
-
-    /// Where in the step spheres would touch, or be nearest, that go on as they do at its start: those that do so sooner are
-    /// looked at first.
-    pub(super) fn soonest(&self) -> f64 {
-        let (h, sight) = (self.length(), &self.watch.sights[self.event]);
-        let (speed, approach) =
-            (h * h * dot(sight.velocity, sight.velocity), -h * dot(sight.distance, sight.velocity));
-        let square = approach * approach - speed * self.ends[0];
-        (approach - square.max(0.0).sqrt()) / speed
-    }
-
-    /// Whether spheres do not touch up to a place in the step, for all that is known of their motion from its ends.
-    pub(super) fn is_clear_until(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<bool> {
-        let there = self.sight_between(theta, ticker)?;
-        let here = &self.watch.sights[self.event];
-        let h = theta * self.length();
-        let Some(rates) = self.watch.event(self.event).0.rates([here, &there], h) else { return Ok(false) };
-        Ok(keeps_clear_after_all(cubic([self.ends[0], there.value], rates, h)))
-    }
-
-    /// Where spheres touch that come into reach of each other in a part of a step.
-    fn touch(&mut self, part: Bracket, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let [from, to] = part.map(|(theta, _)| self.sight_between(theta, ticker));
-        let between = [(part[0].0, from?.value), (part[1].0, to?.value)];
-        if !crosses(between[0].1, between[1].1) {
-            return zero(part, |theta| self.value_at(theta, step, ticker));
-        }
-        let theta = zero(between, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
-        let sight = self.sight_between(theta, ticker)?;
-        let rate = self.watch.event(self.event).0.rate(&sight);
-        let slope = rate.map_or_else(|| slope_of(part), |rate| rate * self.length());
-        self.one_zero(part, (theta, slope), step, ticker)
-    }
-
     /// The one zero in a part of a step, which is near `theta`, where the function has about that slope. Each shadow step costs
     /// as much as a step: a few secants do.
-    fn one_zero(
+    pub(super) fn one_zero(
         &mut self,
         mut whole: Bracket,
         (mut theta, mut slope): (f64, f64),
@@ -387,57 +349,5 @@ impl Search<'_, '_> {
         }
         let whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
         Ok(crosses(self.ends[0], self.ends[1]).then_some(whole))
-    }
-
-    /// As [`value_at`](Self::value_at), and what is known of the ends.
-    pub(super) fn value_on_solution(
-        &mut self,
-        theta: f64,
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<f64> {
-        match theta {
-            0.0 => Ok(self.ends[0]),
-            1.0 => Ok(self.ends[1]),
-            theta => self.value_at(theta, step, ticker),
-        }
-    }
-
-    /// On the polynomial, or on the solution where there is none.
-    pub(super) fn value_at(
-        &mut self,
-        theta: f64,
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<f64> {
-        Ok(self.sight_at(theta, step, ticker)?.value)
-    }
-
-    pub(super) fn sight_at(
-        &mut self,
-        theta: f64,
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Sight> {
-        if self.watch.terms.is_empty() || self.watch.settles {
-            let state = step.at(theta, ticker)?;
-            self.watch.bodies.read(state, &mut self.watch.inside);
-            self.sight_inside(theta, ticker)
-        } else {
-            self.sight_between(theta, ticker)
-        }
-    }
-
-    /// On the polynomial, or on the cubics where there is none.
-    fn sight_between(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
-        self.watch.place(self.event, self.unit.shape.components, self.span, theta);
-        self.sight_inside(theta, ticker)
-    }
-
-    pub(super) fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
-        let bodies = (&self.watch.inside[..], self.span.at(theta));
-        let mut sight = self.watch.sight(self.unit, self.event, bodies, ticker)?;
-        sight.value += self.shift;
-        Ok(sight)
     }
 }
