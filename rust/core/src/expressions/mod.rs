@@ -15,6 +15,7 @@ mod identity;
 pub mod intervals;
 pub mod linear;
 pub mod machine;
+pub mod narrow;
 pub mod nodes;
 pub mod precise;
 pub mod program;

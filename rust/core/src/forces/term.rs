@@ -289,6 +289,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn may_change_anywhere(&self) -> bool {
         false
     }
+    /// Whether it is a formula of places and times that is not known beforehand, nor what their last digits change in it.
+    fn is_formula(&self) -> bool {
+        false
+    }
     /// What its kernel leaves out, and why.
     fn skipped(&self) -> Option<(&'static str, &'static str)> {
         None

@@ -4,6 +4,7 @@ use super::{Expressions, Gives, VARIABLES};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
 use crate::expressions::graph::{Graph, Id, Node};
+use crate::expressions::narrow;
 use crate::expressions::program::Output;
 use crate::expressions::series::Series;
 use crate::expressions::table::{self, Parameters, Variables};
@@ -57,6 +58,7 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         potential: if potential { Some(compiled(&roots)?) } else { None },
         parameters: parameters.to_vec(),
         needs,
+        may_hide: !narrow::all_tell_from_afar(&graph, &force),
         made_from: vec![],
     })
 }

@@ -143,6 +143,8 @@ struct Expressions {
     potential: Option<Arc<Code>>,
     parameters: Vec<f64>,
     needs: Needs,
+    /// Whether there may be more in them than a step sees.
+    may_hide: bool,
     /// What they were made from, but for the parameters.
     made_from: Vec<u64>,
 }
@@ -309,6 +311,9 @@ impl ForceTerm for ExpressionForce {
         Some(place.chain(bodies.map(|body| body as u64)).chain(made_from).collect())
     }
     fn may_change_anywhere(&self) -> bool {
+        self.expressions.may_hide
+    }
+    fn is_formula(&self) -> bool {
         true
     }
     fn strongest(

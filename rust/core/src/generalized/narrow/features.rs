@@ -6,9 +6,10 @@ use crate::error::Result;
 use crate::expressions::assembler::compile;
 use crate::expressions::function::Function;
 use crate::expressions::graph::Dependence;
+use crate::expressions::narrow::calls;
 use crate::expressions::program::{LinearSystem, Output};
 use crate::expressions::{Code, Id, Node};
-use crate::generalized::model::{Model, Source};
+use crate::generalized::model::Model;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -66,7 +67,7 @@ impl Features {
     /// Expressions that are too large.
     pub(in crate::generalized) fn of(model: &mut Model) -> Result<Option<Self>> {
         let roots = model.roots();
-        let calls = calls(&model.source, &roots);
+        let calls = calls(&model.source.graph, &roots);
         if calls.is_empty() {
             return Ok(None);
         }
@@ -120,25 +121,6 @@ impl Features {
         let functions = calls.0;
         Ok(Some(Self { fades, plain, steady, functions, owners, ends, values, rates }))
     }
-}
-
-/// The calls of functions like exp among these expressions, with their arguments, where those change on the way; and those of
-/// sin and cos where the time alone changes them, as drives do: they may be faster than a step, and too weak for its errors.
-fn calls(source: &Source, roots: &[Id]) -> Vec<(Function, Id, Id)> {
-    let graph = &source.graph;
-    let may_be_narrow = |id: Id| {
-        let Node::Call(function, argument) = *graph.node(id) else { return None };
-        let changes = graph.dependence(argument);
-        let may = match function {
-            Function::Exp | Function::Tanh | Function::SechSquared | Function::Sinh | Function::Cosh => {
-                changes > Dependence::Parameters
-            }
-            Function::Sin | Function::Cos => changes == Dependence::Time,
-            _ => false,
-        };
-        may.then_some((function, id, argument))
-    };
-    graph.reachable(roots).into_iter().filter_map(may_be_narrow).collect()
 }
 
 /// The right-hand side with the values of these calls as further numbers of the state.

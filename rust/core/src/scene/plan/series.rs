@@ -19,15 +19,16 @@ const MOST_BODIES: usize = 64;
 ///
 /// Other forces may differ from copy to copy, and series share no lanes then.
 ///
-/// Beside forces of which nothing is known beforehand it is DOP853: its steps are shorter. Of a hundred bodies that met small
-/// walls, written as expressions, it lost 48, and Verner's method 70.
+/// Beside forces of which nothing is known beforehand it is DOP853: its steps are shorter, and its error estimate feels less of the
+/// rounding of places far from the origin. Of a hundred bodies that met small walls, written as expressions, it lost 48, and
+/// Verner's method 70.
 pub(super) fn first_choice(
     forces: &[Arc<dyn ForceTerm>],
     active: &[usize],
     passive: &[usize],
     (groups, touching): (&Groups, bool),
 ) -> Option<&'static Method> {
-    if forces.iter().any(|force| force.may_change_anywhere()) {
+    if forces.iter().any(|force| force.is_formula()) {
         return registry::method("dop853");
     }
     let method = registry::methods_for(false).find(|method| matches!(method.scheme, Scheme::Taylor(_)))?;

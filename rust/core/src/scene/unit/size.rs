@@ -76,7 +76,7 @@ impl Prepared {
     /// The same of forces of which nothing tells where they are from: what a few last digits of places and of the time change
     /// in them, far from the origin or long after the time zero.
     fn rounding_of_formulas(&self, plan: &Plan, length: f64, ticker: &mut Ticker<'_>) -> Result<(f64, f64)> {
-        let forces = plan.forces_of(self.unit.copy).iter().filter(|force| force.may_change_anywhere());
+        let forces = plan.forces_of(self.unit.copy).iter().filter(|force| force.is_formula());
         let bodies = self.bodies();
         let beside: Vec<_> = bodies
             .iter()
