@@ -15,6 +15,7 @@ use visviva_core::memory::reserved;
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::Scheme;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
+use visviva_core::potentials::prepared::prepared;
 use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
 use visviva_core::scene::plan::steps_bodies;
@@ -182,7 +183,9 @@ pub(crate) fn force(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn ForceTe
     let kind: String = get(description, "kind")?;
     let names = registry::FORCES.iter().map(|declaration| declaration.name);
     let declaration = registry::force(&kind).ok_or_else(|| unknown("forces", &kind, names));
-    built(description, declaration)
+    let py = description.py();
+    let declaration = declaration.map_err(|error| raised(py, error))?;
+    declaration.build(&values(declaration, description)?).map_err(|error| raised(py, error))
 }
 
 /// The potential of a description.
@@ -193,16 +196,9 @@ pub(crate) fn described_potential(description: &Bound<'_, PyDict>) -> PyResult<A
     let kind: String = get(description, "kind")?;
     let names = registry::POTENTIALS.iter().map(|declaration| declaration.name);
     let declaration = registry::potential(&kind).ok_or_else(|| unknown("potential", &kind, names));
-    built(description, declaration)
-}
-
-fn built<T: ?Sized>(
-    description: &Bound<'_, PyDict>,
-    declaration: visviva_core::Result<&'static Declaration<T>>,
-) -> PyResult<Arc<T>> {
     let py = description.py();
     let declaration = declaration.map_err(|error| raised(py, error))?;
-    declaration.build(&values(declaration, description)?).map_err(|error| raised(py, error))
+    prepared(declaration, &values(declaration, description)?).map_err(|error| raised(py, error))
 }
 
 /// The parameters of a description, by their names.

@@ -55,6 +55,10 @@ impl Power {
     pub fn scaled(self, from: i32, to: i32) -> Self {
         Self { from: self.from + f64::from(from), to: self.to + f64::from(to), ..self }
     }
+    /// Whether no power of two stands in it.
+    fn is_plain(&self) -> bool {
+        self.from == 0.0 && self.to == 0.0
+    }
     fn whole(&self) -> bool {
         self.exponent.abs() <= WHOLE_MAX && self.exponent == self.exponent.round()
     }
@@ -167,6 +171,22 @@ pub trait Powers: Exponential {
     /// (self·2^from)^exponent·2^to: to 1.05 units in the last place, or |n| + 1 for whole exponents of up to 64,
     /// which are multiplied out; 0 and infinity where they belong, for every number from 0 to infinity.
     fn power(self, power: &Power) -> Self;
+    /// The same of numbers from 0 to 1 and exponents of at least 0: where these are whole or half, by products and a root.
+    #[inline(always)]
+    fn part_power(self, by: &Power) -> Self {
+        let whole = by.exponent.floor();
+        if !by.is_plain() || whole > WHOLE_MAX {
+            return self.power(by);
+        }
+        let product = multiplied(self, whole);
+        if by.exponent == whole {
+            product
+        } else if by.exponent == whole + 0.5 {
+            product * self.sqrt()
+        } else {
+            self.power(by)
+        }
+    }
 }
 
 impl Powers for f64 {

@@ -44,6 +44,10 @@ impl<const N: usize> Rows<N> {
     pub fn starts(&self) -> &[f64] {
         &self.starts
     }
+    /// All rows.
+    pub fn rows(&self) -> &[[f64; N]] {
+        &self.rows
+    }
     /// The bin of an argument, which never falls as the argument rises; the first of what is no number.
     #[inline(always)]
     fn bin(&self, x: f64) -> usize {

@@ -14,7 +14,6 @@ use crate::expressions::table::{Parameters, Variables, read};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::power_of_two::scale;
-use crate::numerics::real::Mask;
 use crate::units::Units;
 use core::f64::consts::SQRT_2;
 use std::sync::{Arc, OnceLock};
@@ -262,12 +261,5 @@ impl Formula for Expressed {
     fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
         let [value, slope, second] = (r * own[0]).all_on(&self.curve);
         [own[1] * value, own[2] * slope, own[3] * second]
-    }
-    #[inline(always)]
-    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
-        let r = r2.sqrt();
-        let pull = self.force(own, r) / r;
-        let middle = r2.less_equal(S::zero());
-        if middle.any() { S::select(middle, -self.curvature(own, r), pull) } else { pull }
     }
 }

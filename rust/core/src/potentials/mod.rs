@@ -20,6 +20,7 @@ mod piecewise;
 pub mod piecewise_polynomial;
 pub mod plummer;
 pub mod power_law;
+pub mod prepared;
 pub mod screened_coulomb;
 pub mod screening;
 pub mod soft_sphere;
@@ -36,6 +37,7 @@ use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power::Powers;
 use crate::numerics::power_of_two::exponent;
+use crate::numerics::real::Mask;
 use crate::numerics::rows::Lookup;
 use crate::units::Units;
 use core::fmt::Debug;
@@ -114,7 +116,8 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
             return self.force(own, r) / r;
         }
         // Its limit in the middle, where 0/0 would be undefined.
-        S::select(r2.less_equal(S::zero()), -self.curvature(own, r), self.force(own, r) / r)
+        let (middle, pull) = (r2.less_equal(S::zero()), self.force(own, r) / r);
+        if middle.any() { S::select(middle, -self.curvature(own, r), pull) } else { pull }
     }
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64> {

@@ -4,6 +4,7 @@ use super::parameters::{Declaration, Parameter, Value};
 use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::numerics::power::Power;
+use crate::numerics::real::Mask;
 use crate::words::number;
 
 /// V = k (1 − r/radius)ⁿ up to the radius, and nothing beyond.
@@ -85,19 +86,32 @@ impl Formula for SoftSphere {
 
     #[inline(always)]
     fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
-        own[0] * Self::overlap(own, r).power(&self.powers[0])
+        own[0] * Self::overlap(own, r).part_power(&self.powers[0])
     }
     #[inline(always)]
     fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
         let radius = own[1];
-        own[0] * (S::splat(self.n) * Self::overlap(own, r).power(&self.powers[1])) / radius
+        own[0] * (S::splat(self.n) * Self::overlap(own, r).part_power(&self.powers[1])) / radius
     }
     #[inline(always)]
     fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
         let (radius, overlap) = (own[1], Self::overlap(own, r));
-        let power = S::splat(self.n * (self.n - 1.0)) * overlap.power(&self.powers[2]);
+        let power = S::splat(self.n * (self.n - 1.0)) * overlap.part_power(&self.powers[2]);
         // The zeroth power is one in contact only.
         let power = S::select(overlap.less_equal(S::zero()), S::zero(), power);
         own[0] * power / radius / radius
+    }
+    /// Nothing, without a root, where no two of the lanes touch, as nearly always.
+    #[inline(always)]
+    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
+        let apart = (own[1] * own[1]).less_equal(r2);
+        if apart.all() {
+            return S::zero();
+        }
+        let r = r2.sqrt();
+        let middle = r2.less_equal(S::zero());
+        let pull = self.force(own, r) / r;
+        let pull = if middle.any() { S::select(middle, -self.curvature(own, r), pull) } else { pull };
+        S::select(apart, S::zero(), pull)
     }
 }

@@ -6,6 +6,7 @@ use super::piecewise::Piecewise;
 use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::units::Units;
 use crate::words::number;
 
 /// Points of a table at least: with fewer, a curvature would be a guess.
@@ -137,6 +138,11 @@ impl Formula for Tabulated {
     fn new(values: &[Value]) -> Self {
         let (r, v) = (values[0].table(), values[1].table());
         Self { curve: curve(r, v), places: r.to_vec() }
+    }
+    /// The same curve: its pieces are taken in units near one, whatever the units of the table are.
+    fn scaled(&self, values: &[Value], units: Units) -> Self {
+        let energy = units.exponent([2, 1, -2]);
+        Self { curve: self.curve.scaled(units.length, energy), places: values[0].table().to_vec() }
     }
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())
