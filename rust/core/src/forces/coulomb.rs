@@ -110,7 +110,7 @@ impl ForceTerm for Coulomb {
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let near = |system: &System<'_>, slot: usize| context.own(self, system).near(system.bodies[slot]);
         Box::new(Kernel {
-            field: newton::attraction(context, near, self.softening),
+            field: newton::attraction(context, near, |system| context.own(self, system).softening),
             scratch: vec![Lanes::zero(); context.shape.len()],
             factor: self.factors(context),
         })
@@ -221,7 +221,7 @@ impl ForceTerm for Coulomb {
         Ok(strongest)
     }
     fn in_every_lane(&self) -> Option<Vec<u64>> {
-        Some(vec![self.softening.to_bits()])
+        Some(vec![u64::from(self.softening > 0.0)])
     }
     fn as_coulomb(&self, [i, j]: [usize; 2]) -> Option<(Scaled, f64)> {
         Some((Scaled::from(self.k).times(self.charge(i)).times(self.charge(j)), self.softening))

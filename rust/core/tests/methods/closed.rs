@@ -44,7 +44,7 @@ where
             .collect()
     };
     let strength = masses.iter().cycle().take(shape.rows).map(|&mass| S::splat(mass)).collect();
-    let gravity = FewBodies::new(shape, count, strength, softening);
+    let gravity = FewBodies::new(shape, strength, vec![S::splat(softening); count]);
     Problem {
         dynamics: if general {
             Dynamics::new(shape, vec![Box::new(gravity)])
@@ -133,7 +133,7 @@ fn lanes_have_the_bits_of_single_trajectories_and_none_disturbs_another() {
     let strength = (0..shape.rows)
         .map(|row| Lanes(core::array::from_fn(|lane| mass(row / bodies, lane, row % bodies))))
         .collect();
-    let mut dynamics = Dynamics::closed(FewBodies::new(shape, count, strength, 0.0));
+    let mut dynamics = Dynamics::closed(FewBodies::new(shape, strength, vec![Lanes::zero(); count]));
     let mut state = State::new(&numbers(0), &numbers(1));
     advance(METHOD, STEP, 40, &mut state, &mut dynamics);
     for (system, lane) in (0..count).flat_map(|system| (0..WIDTH).map(move |lane| (system, lane))) {
@@ -142,7 +142,7 @@ fn lanes_have_the_bits_of_single_trajectories_and_none_disturbs_another() {
             (0..alone.len()).map(|k| number(kind, k % bodies, k / bodies, copy(system, lane))).collect()
         };
         let strength = (0..bodies).map(|i| mass(system, lane, i)).collect();
-        let mut dynamics = Dynamics::closed(FewBodies::new(alone, 1, strength, 0.0));
+        let mut dynamics = Dynamics::closed(FewBodies::new(alone, strength, vec![0.0]));
         let mut single = State::new(&numbers(0), &numbers(1));
         advance(METHOD, STEP, 40, &mut single, &mut dynamics);
         for k in 0..alone.len() {

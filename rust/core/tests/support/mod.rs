@@ -121,7 +121,7 @@ where
     let strength: Vec<S> = splat(mass);
     let series = EachPair::new(shape, strength.clone(), softening);
     Problem {
-        dynamics: Dynamics::closed(FewBodies::new(shape, 1, strength, softening))
+        dynamics: Dynamics::closed(FewBodies::new(shape, strength, vec![S::splat(softening)]))
             .with_series(vec![Box::new(series)]),
         state: State::new(&splat(q), &splat(v)),
         mass: mass.iter().copied().cycle().take(shape.len()).collect(),

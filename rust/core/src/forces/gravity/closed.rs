@@ -41,7 +41,7 @@ fn accelerations<
     for g in 0..G {
         position[1 + g / components][g % components] = q[g];
     }
-    let sum = sums::<S, N, N, HALF, PLANAR, SOFT>(&position, strength, softening2);
+    let sum = sums::<S, N, N, HALF, PLANAR, SOFT>(&position, strength, &[softening2]);
     let mut a = [S::zero(); G];
     for g in 0..G {
         let c = g % components;
@@ -59,12 +59,11 @@ fn kernel<
     const PLANAR: bool,
     const SOFT: bool,
 >(
-    strength: &[S],
-    softening2: f64,
+    (strength, softening2): (&[S], &[S]),
     mut nodes: Nodes<'_, S>,
     steps: u64,
 ) {
-    let (systems, softening2) = (strength.len() / N, S::splat(softening2));
+    let systems = softening2.len();
     for step in 0..steps {
         for system in 0..systems {
             let (start, strength) = (system * G, &strength[system * N..][..N]);
@@ -73,7 +72,7 @@ fn kernel<
             if step == 0 {
                 a.copy_from_slice(&nodes.a[start..][..G]);
             } else {
-                a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(&place, strength, softening2);
+                a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(&place, strength, softening2[system]);
             }
             step_group(&mut nodes, start, a, place);
         }
@@ -82,27 +81,26 @@ fn kernel<
     }
     for system in 0..systems {
         let (start, strength) = (system * G, &strength[system * N..][..N]);
-        let a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(&nodes.q.0[start..][..G], strength, softening2);
+        let place = &nodes.q.0[start..][..G];
+        let a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(place, strength, softening2[system]);
         nodes.a[start..][..G].copy_from_slice(&a);
     }
 }
 
-/// The kernel for so many bodies, in the plane or in space, softened or not.
+/// The kernel for so many bodies, in the plane or in space, softened or not, of these strengths and softening lengths (squared).
 #[inline(always)]
 fn select_kernel<S: InverseCube>(
-    bodies: usize,
-    shape: Shape,
-    strength: &[S],
-    softening2: f64,
+    (bodies, shape, soft): (usize, Shape, bool),
+    numbers: (&[S], &[S]),
     nodes: Nodes<'_, S>,
     steps: u64,
 ) {
     macro_rules! select {
         ($bodies:literal, $half:literal, $group:literal, $planar:literal) => {
-            if softening2 > 0.0 {
-                kernel::<S, $bodies, $half, $group, $planar, true>(strength, softening2, nodes, steps)
+            if soft {
+                kernel::<S, $bodies, $half, $group, $planar, true>(numbers, nodes, steps)
             } else {
-                kernel::<S, $bodies, $half, $group, $planar, false>(strength, softening2, nodes, steps)
+                kernel::<S, $bodies, $half, $group, $planar, false>(numbers, nodes, steps)
             }
         };
     }
@@ -118,8 +116,8 @@ fn select_kernel<S: InverseCube>(
 
 #[inline(always)]
 fn lanes_kernel<V: Vector8 + InverseCube>(few: &FewBodies<Lanes>, nodes: Nodes<'_, Lanes>, steps: u64) {
-    let strength = Vector8::view(&few.strength);
-    select_kernel::<V>(few.bodies(), few.shape, strength, few.softening2, nodes.view::<V>(), steps);
+    let numbers = (V::view(&few.strength), V::view(&few.softening2));
+    select_kernel::<V>((few.bodies(), few.shape, few.soft), numbers, nodes.view::<V>(), steps);
 }
 
 tiered! {
@@ -129,7 +127,8 @@ tiered! {
 /// Of one trajectory, as tests have it.
 #[cfg(test)]
 fn plain_steps<S: Element>(few: &FewBodies<S>, nodes: Nodes<'_, S>, steps: u64) {
-    select_kernel(few.bodies(), few.shape, &few.strength, few.softening2, nodes, steps);
+    let numbers = (&few.strength[..], &few.softening2[..]);
+    select_kernel((few.bodies(), few.shape, few.soft), numbers, nodes, steps);
 }
 
 /// Scalars for which closed systems have a kernel.

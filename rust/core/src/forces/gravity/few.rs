@@ -15,7 +15,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -26,14 +26,18 @@ pub struct FewBodies<S> {
     pub(super) systems: usize,
     /// `G·m` of the massive bodies, system after system.
     pub(super) strength: Vec<S>,
-    pub(super) softening2: f64,
+    /// The softening length of each system, squared, and whether any is more than nothing.
+    pub(super) softening2: Vec<S>,
+    pub(super) soft: bool,
 }
 
 impl<S: Element> FewBodies<S> {
     /// From `G·m` of the massive bodies of each of the systems, at most [`RING_MAX`](super::RING_MAX), which come
-    /// first in its rows.
-    pub fn new(shape: Shape, systems: usize, strength: Vec<S>, softening: f64) -> Self {
-        Self { shape, systems, strength, softening2: softening * softening }
+    /// first in its rows, and the softening length of each.
+    pub fn new(shape: Shape, strength: Vec<S>, softening: Vec<S>) -> Self {
+        let soft = softening.iter().any(|softening| S::zero().less(*softening).any());
+        let softening2: Vec<S> = softening.into_iter().map(|softening| softening * softening).collect();
+        Self { shape, systems: softening2.len(), strength, softening2, soft }
     }
     /// How their coordinates lie.
     pub fn shape(&self) -> Shape {
@@ -51,7 +55,7 @@ impl<S: Element> FewBodies<S> {
 fn pulls<S: InverseCube, const N: usize, const P: usize, const PLANAR: bool, const SOFT: bool>(
     position: &[[S; 3]],
     distance: usize,
-    softening2: S,
+    softening2: &[S],
 ) -> [[S; 3]; P] {
     let components = if PLANAR { 2 } else { 3 };
     let pairs = P * N / position.len();
@@ -63,7 +67,7 @@ fn pulls<S: InverseCube, const N: usize, const P: usize, const PLANAR: bool, con
         for c in 0..components {
             pull[p][c] = position[system + j][c] - position[system + i][c];
         }
-        r2[p] = squared_distance::<S, PLANAR, SOFT>(pull[p], softening2);
+        r2[p] = squared_distance::<S, PLANAR, SOFT>(pull[p], softening2[p / pairs]);
     }
     let w = S::inverse_cubes(r2);
     for p in 0..P {
@@ -86,10 +90,10 @@ pub(super) fn sums<
 >(
     position: &[[S; 3]; ALL],
     strength: &[S],
-    softening2: S,
+    softening2: &[S],
 ) -> [[S; 3]; ALL] {
     let components = if PLANAR { 2 } else { 3 };
-    let strength = &strength[..ALL];
+    let (strength, softening2) = (&strength[..ALL], &softening2[..ALL / N]);
     let mut sum = [[S::zero(); 3]; ALL];
     for distance in 1..=(N - 1) / 2 {
         let pull = pulls::<S, N, ALL, PLANAR, SOFT>(position, distance, softening2);
@@ -122,7 +126,8 @@ struct Systems<'a, S> {
     shape: Shape,
     count: usize,
     strength: &'a [S],
-    softening2: f64,
+    softening2: &'a [S],
+    soft: bool,
     q: &'a [S],
 }
 
@@ -168,8 +173,9 @@ fn some_systems<
     first: bool,
 ) {
     let (rows, bodies) = (systems.shape.rows, systems.shape.rows / systems.count);
-    let (q, softening2) = (systems.q, S::splat(systems.softening2));
+    let q = systems.q;
     let strength = &systems.strength[system * N..][..ALL];
+    let softening2 = &systems.softening2[system..][..ALL / N];
     let components = if PLANAR { 2 } else { 3 };
     // Where the body of that number is: the first of each system are massive.
     macro_rules! row {
@@ -195,7 +201,7 @@ fn some_systems<
                 place[c] = q[c * rows + row];
             }
             let (places, strength) = (&position[own..own + N], &strength[own..own + N]);
-            let term = attraction::<S, PLANAR, SOFT>(place, places, strength, softening2);
+            let term = attraction::<S, PLANAR, SOFT>(place, places, strength, softening2[own / N]);
             add::<S>(a, row, rows, components, term, first);
         }
     }
@@ -206,9 +212,9 @@ fn some_systems<
 fn any_systems<S: InverseCube>(systems: &Systems<'_, S>, a: &mut [S], first: bool) {
     let (rows, components) = (systems.shape.rows, systems.shape.components);
     let (bodies, massive) = (rows / systems.count, systems.strength.len() / systems.count);
-    let softening2 = S::splat(systems.softening2);
     let none = [[S::zero(); 3]; RING_MAX];
     for (system, strength) in systems.strength.chunks_exact(massive.max(1)).enumerate() {
+        let softening2 = systems.softening2[system];
         let place = |body: usize| {
             let mut place = [S::zero(); 3];
             for c in 0..components {
@@ -263,7 +269,7 @@ fn add<S: Real>(a: &mut [S], row: usize, rows: usize, components: usize, term: [
 fn select_kernel<S: InverseCube, const MANY: bool>(systems: &Systems<'_, S>, a: &mut [S], first: bool) {
     macro_rules! select {
         ($($bodies:literal)+) => {
-            match (systems.strength.len() / systems.count, systems.shape.components == 2, systems.softening2 > 0.0) {
+            match (systems.strength.len() / systems.count, systems.shape.components == 2, systems.soft) {
                 $(
                     ($bodies, false, false) => select!($bodies, false, false),
                     ($bodies, false, true) => select!($bodies, false, true),
@@ -294,7 +300,8 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
         shape: bodies.shape,
         count: bodies.systems,
         strength: V::view(&bodies.strength),
-        softening2: bodies.softening2,
+        softening2: V::view(&bodies.softening2),
+        soft: bodies.soft,
         q: V::view(q),
     };
     if V::APART {
@@ -343,7 +350,8 @@ macro_rules! plain_force {
                     shape: self.shape,
                     count: self.systems,
                     strength: &self.strength,
-                    softening2: self.softening2,
+                    softening2: &self.softening2,
+                    soft: self.soft,
                     q: phase.q,
                 };
                 select_kernel::<$type, false>(&systems, a, first);

@@ -23,7 +23,7 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
     first: bool,
 ) {
     let (q, a, strength) = (V::view(q), V::view_mut(a), V::view(&bodies.strength));
-    let softening2 = V::splat(bodies.softening2);
+    let softening2 = V::view(&bodies.softening2);
     let (rows, components) = (bodies.shape.rows, bodies.shape.components);
     let (all, active) = (bodies.bodies(), strength.len() / bodies.systems);
     if first {
@@ -34,7 +34,7 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
         for i in 0..active {
             for j in i + 1..all {
                 let mut apart = [V::zero(); 3];
-                let mut square = softening2;
+                let mut square = softening2[system];
                 for c in 0..components {
                     apart[c] = q[c * rows + row + j] - q[c * rows + row + i];
                     square = apart[c].multiply_add(apart[c], square);

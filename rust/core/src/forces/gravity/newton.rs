@@ -58,20 +58,21 @@ impl Gravity {
 /// Gravity among the few bodies of each system, batched, if it is the first of the forces.
 pub fn few_bodies(context: &Context<'_>) -> Option<FewBodies<Lanes>> {
     let newtonian = |system: &System<'_>| system.forces.first().and_then(|force| force.as_newtonian());
-    let (_, softening) = newtonian(&context.first())?;
-    let constant = |system: &System<'_>| newtonian(system).map_or(0.0, |(constant, _)| constant);
+    let _ = newtonian(&context.first())?;
+    let of = |system: &System<'_>| newtonian(system).unwrap_or_default();
     let strength =
-        |system: &System<'_>, slot: usize| context.units.take(constant(system), CONSTANT) * system.mass[slot];
-    Some(few(context, strength, softening))
+        |system: &System<'_>, slot: usize| context.units.take(of(system).0, CONSTANT) * system.mass[slot];
+    Some(few(context, strength, |system| of(system).1))
 }
 
 fn few(
     context: &Context<'_>,
     strength: impl Fn(&System<'_>, usize) -> f64,
-    softening: f64,
+    softening: impl Fn(&System<'_>) -> f64,
 ) -> FewBodies<Lanes> {
     let strength = context.in_rows(context.active, strength);
-    FewBodies::new(context.shape, context.blocks(), strength, context.units.take(softening, [1, 0, 0]))
+    let softening = context.per_system(|system| context.units.take(softening(system), [1, 0, 0]));
+    FewBodies::new(context.shape, strength, softening)
 }
 
 /// The ring of the bodies of one system, if it has few and all attract.
@@ -89,15 +90,15 @@ pub fn ring(context: &Context<'_>, constant: f64, softening: f64) -> Option<Ring
 pub fn attraction(
     context: &Context<'_>,
     strength: impl Fn(&System<'_>, usize) -> f64,
-    softening: f64,
+    softening: impl Fn(&System<'_>) -> f64,
 ) -> Box<dyn Force<Lanes>> {
     let (shape, active) = (context.shape, context.active);
     if context.arrangement == Arrangement::Batched {
         let bodies = few(context, strength, softening);
         return if active <= RING_MAX { Box::new(bodies) } else { Box::new(ManyBodies(bodies)) };
     }
-    let softening = context.units.take(softening, [1, 0, 0]);
     let system = context.first();
+    let softening = context.units.take(softening(&system), [1, 0, 0]);
     let numbers: Vec<f64> = (0..active).map(|slot| strength(&system, slot)).collect();
     if active <= RING_MAX {
         return Box::new(Ring::new(shape, numbers, softening));
@@ -117,7 +118,7 @@ impl ForceTerm for Gravity {
         let strength = |system: &System<'_>, slot: usize| {
             context.units.take(context.own(self, system).constant, CONSTANT) * system.mass[slot]
         };
-        attraction(context, strength, self.softening)
+        attraction(context, strength, |system| context.own(self, system).softening)
     }
 
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
@@ -181,7 +182,7 @@ impl ForceTerm for Gravity {
         (self.constant != 0.0).then(|| (3 * length - exponent(self.constant) - mass).div_euclid(2))
     }
     fn in_every_lane(&self) -> Option<Vec<u64>> {
-        Some(vec![self.softening.to_bits()])
+        Some(vec![u64::from(self.softening > 0.0)])
     }
     fn skipped(&self) -> Option<(&'static str, &'static str)> {
         (self.softening == 0.0).then_some(("softening terms", "softening is 0"))

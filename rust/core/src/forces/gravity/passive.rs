@@ -74,8 +74,9 @@ pub(super) fn packed_attraction<V: Vector8 + InverseCube, const PLANAR: bool, co
 pub(super) struct Leading {
     /// Their `G·m`.
     strength: Vec<Lanes>,
-    /// The softening length, squared.
-    softening2: f64,
+    /// The softening length, squared, and whether it is more than nothing.
+    softening2: Lanes,
+    soft: bool,
     /// Much room, of a method that asks for it.
     series: Option<PullSeries>,
 }
@@ -87,7 +88,8 @@ impl Leading {
         let (massive, softening2) = (leaders.bodies.len(), softening * softening);
         Self {
             strength: vec![Lanes::zero(); massive],
-            softening2,
+            softening2: Lanes::splat(softening2),
+            soft: softening > 0.0,
             series: leaders.expands.then(|| PullSeries::new(massive, leaders.components, softening2)),
         }
     }
@@ -95,15 +97,18 @@ impl Leading {
 
 impl Following for Leading {
     fn lead(&mut self, own: &dyn ForceTerm, units: Units, mass: &[f64], lanes: Bits) {
-        let constant = own.as_newtonian().map_or(0.0, |(constant, _)| units.take(constant, CONSTANT));
+        let (constant, softening) = own.as_newtonian().unwrap_or_default();
+        let (constant, softening) = (units.take(constant, CONSTANT), units.take(softening, [1, 0, 0]));
+        self.softening2 = Lanes::select(lanes, Lanes::splat(softening * softening), self.softening2);
         for (strength, mass) in self.strength.iter_mut().zip(mass) {
             *strength = Lanes::select(lanes, Lanes::splat(constant * mass), *strength);
         }
     }
 
     fn apply(&mut self, massive: Massive<'_>, (q, _): (&[Lanes], &[Lanes]), a: &mut [Lanes], first: bool) {
-        let Self { strength, softening2, .. } = self;
-        Lanes::pass(Pull { places: massive.places, strength, softening2: *softening2, q, a, first });
+        let Self { strength, softening2, soft, .. } = self;
+        let softening2 = soft.then_some(*softening2);
+        Lanes::pass(Pull { places: massive.places, strength, softening2, q, a, first });
     }
 
     fn coefficient(
@@ -127,8 +132,8 @@ struct Pull<'a> {
     places: &'a [Lanes],
     /// Their `G·m`.
     strength: &'a [Lanes],
-    /// The softening length, squared.
-    softening2: f64,
+    /// The softening length, squared, if there is one.
+    softening2: Option<Lanes>,
     /// Where the massless bodies are, one number for each component.
     q: &'a [Lanes],
     /// Their accelerations.
@@ -141,7 +146,7 @@ impl Pass<Lanes> for Pull<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        match (self.q.len() == 2, self.softening2 > 0.0) {
+        match (self.q.len() == 2, self.softening2.is_some()) {
             (false, false) => pull::<V, false, false>(self),
             (false, true) => pull::<V, false, true>(self),
             (true, false) => pull::<V, true, false>(self),
@@ -155,7 +160,10 @@ fn pull<V: View<Lanes>, const PLANAR: bool, const SOFT: bool>(pull: Pull<'_>) {
     let components = if PLANAR { 2 } else { 3 };
     let (places, strength, q, a) =
         (V::view(pull.places), V::view(pull.strength), V::view(pull.q), V::view_mut(pull.a));
-    let softening2 = V::splat(pull.softening2);
+    let softening2 = match pull.softening2 {
+        Some(softening2) => V::load(softening2),
+        None => V::zero(),
+    };
     let massive = strength.len();
     let mut position = [V::zero(); 3];
     position[..components].copy_from_slice(&q[..components]);
