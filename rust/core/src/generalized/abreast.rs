@@ -5,11 +5,13 @@
 //! Methods with equal steps go from node to node together, and take up copies eight at a time.
 
 mod endings;
+mod events;
 mod outputs;
 mod side_by_side;
 
 pub use side_by_side::SideBySide;
 
+use super::events::{Function, Watch};
 use super::gauss::GaussEight;
 use super::model::Model;
 use super::motion::Motion;
@@ -33,7 +35,8 @@ use side_by_side::trial;
 /// blocks of them share than trajectories lose that wait for the slowest of eight.
 const LARGEST_SYSTEM: usize = 1;
 
-/// Whether a run goes side by side: outputs are read at given times, and no state is put elsewhere on the way.
+/// Whether a run goes side by side: outputs are read at given times, nobody else's function is called, and no state is put elsewhere
+/// on the way.
 pub fn together(model: &Model, request: &Request) -> bool {
     let lanes_are_trajectories = match request.integrator {
         Integrator::Table(_) => true,
@@ -44,13 +47,13 @@ pub fn together(model: &Model, request: &Request) -> bool {
     };
     lanes_are_trajectories
         && request.outputs.is_some()
-        && request.events.is_empty()
+        && !request.events.iter().any(|event| matches!(event.function, Function::Called(_)))
         && model.projection.is_none()
         && request.span.0 != request.span.1
 }
 
 /// A trajectory in its lane.
-struct Slot {
+struct Slot<'a> {
     /// Its place among all.
     index: usize,
     solution: Solution,
@@ -63,6 +66,12 @@ struct Slot {
     before: u64,
     sticking: Sticking,
     poles: Poles,
+    watch: Watch<'a>,
+    /// Where an event ends it.
+    stop: Option<f64>,
+    /// Evaluations of the system that it alone has asked for, and what all had when it began.
+    looked: u64,
+    looked_before: u64,
 }
 
 /// What is at work.
@@ -80,7 +89,9 @@ struct Abreast<'a> {
     state: State<Lanes>,
     between: State<Lanes>,
     parameters: Vec<Lanes>,
-    slots: [Option<Slot>; WIDTH],
+    slots: [Option<Slot<'a>>; WIDTH],
+    /// Evaluations of the system that single lanes have asked for.
+    looked: u64,
     done: Vec<Option<Solution>>,
     /// Those that went through a pole.
     passed: Vec<usize>,
@@ -103,7 +114,7 @@ pub fn solve_together(
     let mut run = Abreast::new(model, request, member(0), members)?;
     let mut waiting = 0..members;
     let outcome = loop {
-        let fresh = run.take_up(&mut waiting, member);
+        let fresh = run.take_up(&mut waiting, member)?;
         let running = run.running();
         if !running.any() {
             break Ok(());
@@ -178,6 +189,7 @@ impl<'a> Abreast<'a> {
             state,
             parameters,
             slots: [const { None }; WIDTH],
+            looked: 0,
             done: (0..members).map(|_| None).collect(),
             passed: vec![],
         })
@@ -193,10 +205,10 @@ impl<'a> Abreast<'a> {
         &mut self,
         waiting: &mut core::ops::Range<usize>,
         member: impl Fn(usize) -> (&'m [f64], &'m [f64]),
-    ) -> Bits {
+    ) -> Result<Bits> {
         let mut fresh = Bits(0);
         if self.in_step && self.slots.iter().any(Option::is_some) {
-            return fresh;
+            return Ok(fresh);
         }
         let (t0, end) = self.request.span;
         for lane in 0..WIDTH {
@@ -223,15 +235,29 @@ impl<'a> Abreast<'a> {
             let (from, before) = (t0, self.system.evaluations());
             let sticking = Sticking::new(self.model, parameters, t0);
             let poles = Poles::new(self.model, parameters, t0, y0);
-            self.slots[lane] =
-                Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before, sticking, poles });
+            let mut watch = Watch::new(&self.request.events, parameters);
+            watch.start(t0, y0)?;
+            self.slots[lane] = Some(Slot {
+                index,
+                solution,
+                next_output: 0,
+                smallest: 0.0,
+                from,
+                before,
+                sticking,
+                poles,
+                watch,
+                stop: None,
+                looked: 0,
+                looked_before: self.looked,
+            });
         }
         if fresh.any() {
             self.system.set_parameters(&self.parameters);
             self.trial.set_parameters(&self.parameters);
             self.clock.restart(fresh, Lanes::splat(end - t0));
         }
-        fresh
+        Ok(fresh)
     }
 
     /// Tries a step in every lane, and keeps those that are accepted.
@@ -250,13 +276,18 @@ impl<'a> Abreast<'a> {
         let Self { trial, system, state, clock, norm, .. } = self;
         let outcome = trial.attempt(running, system, state, clock, norm, ticker)?;
         let kept = self.judge(&outcome, running, ticker);
-        let kept = self.short_of_poles(kept, ticker);
-        self.record(&outcome, kept, ticker)?;
+        let mut kept = self.short_of_poles(kept, ticker);
+        let watches = kept.any() && !self.request.events.is_empty();
+        if watches {
+            kept = self.look_for_events(&outcome, kept, ticker)?;
+        }
+        self.record(&outcome, kept, watches, ticker)?;
         self.look_for_rest(kept, ticker);
         self.trial.keep(kept, &mut self.state);
         for (_, slot) in self.in_lanes(kept) {
             slot.solution.last_time = slot.solution.reached;
         }
+        self.stop_at_events(kept, ticker);
         for lane in 0..WIDTH {
             if outcome.finished.and(kept).lane(lane) {
                 self.end(lane, Ending::Finished, None, ticker);
@@ -266,7 +297,7 @@ impl<'a> Abreast<'a> {
     }
 
     /// The slots in the lanes of a mask.
-    fn in_lanes(&mut self, mask: Bits) -> impl Iterator<Item = (usize, &mut Slot)> {
+    fn in_lanes(&mut self, mask: Bits) -> impl Iterator<Item = (usize, &mut Slot<'a>)> {
         let slots = self.slots.iter_mut().enumerate().filter(move |(lane, _)| mask.lane(*lane));
         slots.filter_map(|(lane, slot)| slot.as_mut().map(|slot| (lane, slot)))
     }
@@ -304,12 +335,13 @@ impl<'a> Abreast<'a> {
             let finite = nothing[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
             let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
+            let all_looked = self.looked;
             let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
             let Some(slot) = &mut self.slots[lane] else { continue };
             let Slot { solution, smallest, .. } = slot;
             solution.evaluations += cost.tried + taken;
             if in_step {
-                solution.evaluations = now - slot.before;
+                solution.evaluations = now - slot.before - (all_looked - slot.looked_before) + slot.looked;
             }
             if lost.is_some() {
                 self.end(lane, Ending::StepTooSmall, lost, ticker);

@@ -30,7 +30,8 @@ impl Abreast<'_> {
     pub(super) fn look_for_rest(&mut self, kept: Bits, ticker: &mut Ticker<'_>) {
         for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
             let next = self.trial.next();
-            let Some(slot) = self.slots[lane].as_mut().filter(|slot| !slot.sticking.is_empty()) else {
+            let looks = |slot: &&mut Slot<'_>| slot.stop.is_none() && !slot.sticking.is_empty();
+            let Some(slot) = self.slots[lane].as_mut().filter(looks) else {
                 continue;
             };
             let y: Vec<f64> = next.all().0.iter().map(|y| y.0[lane]).collect();
@@ -38,6 +39,17 @@ impl Abreast<'_> {
                 slot.sticking.look(slot.solution.reached, &y, self.request.dt)
             {
                 self.end(lane, Ending::StepTooSmall, Some(message), ticker);
+            }
+        }
+    }
+
+    /// Ends those lanes of these that an event stops.
+    pub(super) fn stop_at_events(&mut self, kept: Bits, ticker: &mut Ticker<'_>) {
+        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
+            let Some(slot) = self.slots[lane].as_mut() else { continue };
+            if let Some(stop) = slot.stop {
+                slot.solution.reached = stop;
+                self.end(lane, Ending::Stopped, None, ticker);
             }
         }
     }
@@ -63,7 +75,10 @@ impl Abreast<'_> {
 
     /// Puts away what a trajectory has come to, if there is one in the lane.
     pub(super) fn settle(&mut self, lane: usize, ending: Ending, failure: Option<String>) {
-        let Some(Slot { index, mut solution, mut sticking, .. }) = self.slots[lane].take() else { return };
+        let Some(Slot { index, mut solution, mut sticking, watch, .. }) = self.slots[lane].take() else {
+            return;
+        };
+        solution.found = watch.found;
         for (last, y) in solution.last_state.iter_mut().zip(self.state.all().0) {
             *last = y.0[lane];
         }

@@ -11,15 +11,15 @@ use crate::ode::system::System;
 use crate::parallel::Ticker;
 
 impl Abreast<'_> {
-    /// Reads the output times that the kept steps pass.
+    /// Reads the output times that the kept steps pass, of which the continuous extension may be ready.
     pub(super) fn record(
         &mut self,
         outcome: &Settled<Lanes>,
         kept: Bits,
+        mut dense: bool,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let forward = self.request.span.0 <= self.request.span.1;
-        let mut dense = false;
         loop {
             let (mut theta, mut between) = (Lanes::zero(), Bits(0));
             let (outputs, cost) = (self.outputs, self.cost);
@@ -27,8 +27,9 @@ impl Abreast<'_> {
             for (lane, slot) in slots.iter_mut().enumerate().filter(|(lane, _)| kept.lane(*lane)) {
                 let Some(slot) = slot else { continue };
                 let (from, to) = (slot.from, slot.solution.reached);
+                let end = slot.stop.unwrap_or(to);
                 while let Some(&t) = outputs.get(slot.next_output)
-                    && (if forward { t <= to } else { t >= to })
+                    && (if forward { t <= end } else { t >= end })
                 {
                     let at = if t == to {
                         trial.next()
@@ -52,13 +53,14 @@ impl Abreast<'_> {
                 dense = true;
             }
             trial.at(outcome, system, state, theta, there, ticker)?;
-            let (in_step, now) = (self.in_step, self.system.evaluations());
+            let (in_step, now, all_looked) = (self.in_step, self.system.evaluations(), self.looked);
             for lane in (0..WIDTH).filter(|&lane| between.lane(lane)) {
                 let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
                 let Some(slot) = &mut self.slots[lane] else { continue };
                 slot.solution.evaluations += taken;
                 if in_step {
-                    slot.solution.evaluations = now - slot.before;
+                    slot.solution.evaluations =
+                        now - slot.before - (all_looked - slot.looked_before) + slot.looked;
                 }
                 if lost.is_some() {
                     // As in a run alone: nothing is known beyond.
@@ -72,7 +74,7 @@ impl Abreast<'_> {
     }
 }
 
-impl Slot {
+impl Slot<'_> {
     /// Writes a row.
     pub(super) fn write(&mut self, t: f64, state: &State<Lanes>, lane: usize) {
         self.solution.t.push(t);

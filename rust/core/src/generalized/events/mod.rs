@@ -12,6 +12,7 @@ use super::sticking::along;
 use crate::error::Result;
 use crate::expressions::{Code, Machine};
 use core::fmt;
+pub(super) use search::INSIDE;
 use search::{Point, Search, rounding};
 use std::sync::Arc;
 
@@ -163,7 +164,7 @@ impl<'a> Watch<'a> {
         }
         let (from, to) = step.span();
         self.inside.clear();
-        self.inside.extend_from_slice(step.at(search::INSIDE)?);
+        self.inside.extend_from_slice(step.at(INSIDE)?);
         let mut zeros: Vec<(f64, usize)> = vec![];
         for (which, event) in self.events.iter().enumerate().filter(|&(which, _)| !self.never[which]) {
             let start = Point::at(0.0, self.ends[which], from, to);

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::ode::events::{before_the_first, zero};
 
 /// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.
-pub(super) const INSIDE: f64 = 0.458_6;
+pub(in crate::generalized) const INSIDE: f64 = 0.458_6;
 
 /// Where a part is looked at again that seems to be understood.
 const SECOND: f64 = 0.81;
