@@ -55,15 +55,6 @@ impl fmt::Display for Collisions {
     }
 }
 
-/// Spheres, for a run to look for those that touch.
-#[derive(Clone, Debug, Default)]
-pub struct Spheres {
-    /// The radius of each body.
-    pub radius: Vec<f64>,
-    /// Pairs that are in contact at the start.
-    pub touching: Vec<(usize, usize)>,
-}
-
 impl Collisions {
     /// By name.
     ///
@@ -131,9 +122,9 @@ fn check_mergers(scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// The event of a contact.
-pub(super) fn contact(radius: Vec<f64>, touching: Vec<(usize, usize)>) -> Event {
-    Event { what: What::Contact(Arc::new(Spheres { radius, touching })), direction: 0.0, last: Some(1) }
+/// The event of a contact, where these pairs are in contact at the start.
+pub(super) fn contact(touching: Vec<(usize, usize)>) -> Event {
+    Event { what: What::Contact(Arc::from(touching)), direction: 0.0, last: Some(1) }
 }
 
 /// Whether any two bodies of a copy may touch.

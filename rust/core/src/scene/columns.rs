@@ -115,6 +115,18 @@ impl Columns {
         })
     }
 
+    /// Takes as many rows as there are from those of one copy of others of the same kind.
+    pub fn take_rows(&mut self, all: &Self, copy: usize) {
+        let arrays = [(&mut self.position, &all.position), (&mut self.velocity, &all.velocity)];
+        let derived = self.derived.iter_mut().zip(&all.derived);
+        let derived = derived.map(|(own, all)| (&mut own.values, &all.values));
+        for (own, all_copies) in arrays.into_iter().chain(derived) {
+            let each = all_copies.len() / all.copies;
+            let rows = own.len();
+            own.copy_from_slice(&all_copies[copy * each..][..rows]);
+        }
+    }
+
     /// NaN for each particle from the output time at which its record ends, and for what is derived from it.
     pub fn finish(&mut self, missing: &[Missing]) {
         let Self { times, particles, .. } = *self;

@@ -7,7 +7,6 @@
 
 mod sight;
 
-pub use super::collisions::Spheres;
 pub(crate) use sight::dot;
 pub use sight::{Moving, Sight, apart};
 
@@ -63,8 +62,8 @@ pub enum What {
     },
     /// The energy of all bodies has this value.
     Energy(f64),
-    /// Spheres come to touch, any two of them.
-    Contact(Arc<Spheres>),
+    /// Spheres come to touch, any two of them; these pairs are in contact at the start.
+    Contact(Arc<[(usize, usize)]>),
     /// Somebody else's function is zero.
     Function(Arc<Function>),
 }

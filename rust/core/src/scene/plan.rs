@@ -237,7 +237,9 @@ impl Plan {
         let batched = match groups {
             _ if turning.steps() => true,
             Groups::Single => true,
-            Groups::All if touching => false,
+            Groups::All if touching => {
+                scene.copies > 1 && scene.particles <= RING_MAX && transformed.is_none()
+            }
             // Each massless body goes with the massive ones in a time of its own; they have no other bits for it.
             Groups::All if transformed.is_some() => active.len() <= RING_MAX,
             Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),

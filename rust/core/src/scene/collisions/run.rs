@@ -1,5 +1,7 @@
-//! A run with collisions: every copy by itself, leg after leg, put together as one run.
+//! A run with collisions: all copies together to the first contact of each, then every copy by itself, leg after leg, put together
+//! as one run.
 
+mod first_leg;
 mod flights;
 mod fly;
 mod jumps;
@@ -17,6 +19,7 @@ use crate::scene::events::Event;
 use crate::scene::plan::Plan;
 use crate::scene::request::Request;
 use crate::scene::run::{Collided, Events, Kept, Output, Reached, plan_through};
+use first_leg::{Leg, first_leg};
 use member::Member;
 pub use start::absorbed;
 use start::{check_overlaps, whole_of};
@@ -26,16 +29,16 @@ use start::{check_overlaps, whole_of};
 /// # Errors
 /// As [`Plan::new`]; what [`Collisions`] have no meaning for.
 pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Ticker<'_>) -> Result<Plan> {
-    let looking = |scene: &Scene, mut events: Vec<Event>| {
-        events.push(contact(scene.radii(0).to_vec(), Vec::new()));
+    let looking = |mut events: Vec<Event>| {
+        events.push(contact(Vec::new()));
         Request { events, collisions: Some(rule), ..request.clone() }
     };
     let mut wholes = (0..scene.copies).map(|copy| whole_of(scene, copy, rule));
     let merged = wholes.find_map(Result::transpose).transpose()?;
     // Bodies that are parts of others differ from copy to copy: the plan is that of one.
     let plan = match merged {
-        Some(first) => plan_through(&first, &looking(&first, Vec::new()), ticker)?,
-        None => plan_through(scene, &looking(scene, request.events.clone()), ticker)?,
+        Some(first) => plan_through(&first, &looking(Vec::new()), ticker)?,
+        None => plan_through(scene, &looking(request.events.clone()), ticker)?,
     };
     rule.check(scene, plan.direction)?;
     (0..scene.copies).try_for_each(|copy| check_overlaps(scene, copy, rule))?;
@@ -50,18 +53,22 @@ pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tick
     let mut plan = plan(scene, request, rule, ticker)?;
     let copies = scene.copies;
     let threads = if request.events.iter().any(Event::calls) { 1 } else { request.threads.min(copies) };
+    let mut first = first_leg(scene, request, (rule, plan.direction), ticker)?;
     if copies > 1 {
-        ticker.control().count_whole(copies as u64);
+        let (done, _) = ticker.control().progress();
+        ticker.control().count_whole(done + copies as u64);
         plan.threads = (threads, 1);
     }
     let mut members = for_chunks(threads, copies, ticker, |copy, ticker| {
-        let member = Member::run(scene, request, (rule, copy), plan.direction, ticker);
+        let first = first.as_ref().map(|all| Leg::of_copy(all, copy, scene, request)).transpose()?;
+        let member = Member::run(scene, request, (rule, copy), (plan.direction, first), ticker);
         if copies > 1 {
             ticker.control().count(1);
         }
         member
     })?;
-    let columns = gathered(scene, request, &mut members)?;
+    let together = first.as_mut().map(|all| core::mem::take(&mut all.columns));
+    let columns = gathered(scene, request, together, &mut members)?;
     let mut output = Output {
         columns,
         outcomes: members.iter().map(|member| member.outcome.clone()).collect(),
@@ -115,13 +122,21 @@ fn wanted(request: &Request) -> Wanted {
     }
 }
 
-/// The columns of all members.
-fn gathered(scene: &Scene, request: &Request, members: &mut [Member]) -> Result<Columns> {
+/// The columns of all members, of whom some have theirs among those of all already.
+fn gathered(
+    scene: &Scene,
+    request: &Request,
+    together: Option<Columns>,
+    members: &mut [Member],
+) -> Result<Columns> {
     if let [member] = members {
         return Ok(core::mem::take(&mut member.columns));
     }
-    let mut all = Columns::new(scene.copies, request.times.len(), scene.particles, &wanted(request))?;
-    for (copy, member) in members.iter_mut().enumerate() {
+    let mut all = match together {
+        Some(all) => all,
+        None => Columns::new(scene.copies, request.times.len(), scene.particles, &wanted(request))?,
+    };
+    for (copy, member) in members.iter_mut().enumerate().filter(|(_, member)| member.columns.times > 0) {
         let own = core::mem::take(&mut member.columns);
         let arrays = [(&mut all.position, &own.position), (&mut all.velocity, &own.velocity)];
         let derived =

@@ -14,6 +14,8 @@ mod contacts;
 mod inside;
 mod nearest;
 mod search;
+mod spheres;
+mod spheres_abreast;
 mod touching;
 mod turns;
 
@@ -157,7 +159,7 @@ impl<'a> Watch<'a> {
             });
             let places: Vec<usize> = places.collect();
             match &plan.events[index].what {
-                What::Contact(radii) => spheres = Some((index, radii)),
+                What::Contact(touching) => spheres = Some((index, touching)),
                 _ => events.push((index, places)),
             }
         }
@@ -187,9 +189,11 @@ impl<'a> Watch<'a> {
             events,
         };
         watch.bodies.read(state, &mut watch.before);
-        watch.contacts = spheres
-            .map(|(index, spheres)| Contacts::new(index, spheres, &watch.bodies.indices, &watch.before));
         let copy = unit.unit.copy;
+        watch.contacts = spheres.map(|(index, touching)| {
+            let spheres = (scene.radii(copy), &**touching);
+            Contacts::new(index, spheres, &watch.bodies.indices, &watch.before)
+        });
         let told = |body: usize| [scene.positions(copy)[body], scene.velocities(copy)[body]];
         for event in 0..watch.events.len() {
             let mut sight = watch.sight(unit, event, (&watch.before, job.begun()), ticker)?;
@@ -233,11 +237,6 @@ impl<'a> Watch<'a> {
     fn own_event(&self, event: usize) -> (&'a Event, &[usize]) {
         let (index, places) = &self.events[event];
         (&self.job.plan.events[*index], places)
-    }
-
-    /// Whether spheres are looked for on every step.
-    fn looks_at_all(&self) -> bool {
-        self.contacts.is_some()
     }
 
     /// What an event sees of these bodies after this time.
@@ -308,6 +307,9 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.bodies.read(state, &mut self.before);
+        if let Some(contacts) = &mut self.contacts {
+            contacts.go_on(&self.before);
+        }
         for event in 0..self.events.len() {
             self.sights[event] = self.sight(unit, event, (&self.before, elapsed), ticker)?;
         }

@@ -78,6 +78,19 @@ impl Events {
         self.lines.last().and_then(|line| Some((line.spheres?, line.t_rest)))
     }
 
+    /// Those of one copy, of a table in order.
+    pub fn of_copy(&self, copy: usize, particles: usize) -> Self {
+        let first = self.lines.partition_point(|line| line.copy < copy);
+        let own = self.lines[first..].iter().take_while(|line| line.copy == copy);
+        let mut events = Self::default();
+        for line in own {
+            let states = events.states.len();
+            events.states.extend(&self.states[line.states..line.states + particles]);
+            events.lines.push(Line { states, ..*line });
+        }
+        events
+    }
+
     /// Adds events of another table, which are called otherwise there, of bodies that are `places` of it each.
     pub fn extend(&mut self, other: &Self, copy: usize, names: &[usize], places: &[usize]) {
         for line in other.lines.iter().filter(|line| line.spheres.is_none()) {

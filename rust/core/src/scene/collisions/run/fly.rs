@@ -1,5 +1,6 @@
 //! A copy on which no force acts, on its way through its collisions: rows are those of straight lines, contacts are known.
 
+use super::first_leg::Leg;
 use super::flights::Flights;
 use super::member::Member;
 use crate::error::{Error, Result};
@@ -74,7 +75,7 @@ impl Member {
                 // All rows are counted from the start.
                 ticker.control().set_total(total);
             }
-            let _ = self.take(whole, request, &leg, &[], output)?;
+            let _ = self.take(whole, request, &leg, &[], Leg::of(output)?)?;
             if self.outcome.ending != Ending::Finished {
                 return Ok(None);
             }

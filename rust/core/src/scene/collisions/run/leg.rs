@@ -52,7 +52,7 @@ impl Remaining {
         }
         if super::may_touch(scene, 0) {
             let touching = touching.iter().map(|&(i, j)| (self.places[i], self.places[j])).collect();
-            events.push(contact(scene.radius.clone(), touching));
+            events.push(contact(touching));
         }
         (events, names)
     }

@@ -1,11 +1,12 @@
 //! One copy on its way through its collisions: leg after leg, each to the next contact or to the end.
 
 use super::super::{Collision, Collisions, Impact};
+use super::first_leg::Leg;
 use super::flights::Flights;
 use super::squeezed::Squeezed;
 use super::start::{bodies_of, part_of};
 use super::wanted;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::forces::remaining::Remaining;
 use crate::numerics::double_double::DoubleDouble;
 use crate::parallel::Ticker;
@@ -16,7 +17,7 @@ use crate::scene::events::Event;
 use crate::scene::integrate::Ending;
 use crate::scene::request::Request;
 use crate::scene::room::give_back;
-use crate::scene::run::{Events, Kept, Outcome, Output, Reached, run_through};
+use crate::scene::run::{Events, Kept, Outcome, Reached, run_through};
 use std::collections::BTreeMap;
 
 /// Spheres rest on each other that part by less than this part of their radii,
@@ -70,12 +71,12 @@ pub(super) struct Member {
 }
 
 impl Member {
-    /// Runs a copy.
+    /// Runs a copy, whose first leg may be known.
     pub(super) fn run(
         scene: &Scene,
         request: &Request,
         (rule, copy): (Collisions, usize),
-        direction: f64,
+        (direction, first): (f64, Option<Leg>),
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let bodies = bodies_of(scene, copy, rule, direction);
@@ -105,35 +106,50 @@ impl Member {
             flights: None,
             found: vec![0; request.events.len()],
         };
-        let mut touching = member.bodies.touching();
-        // Those that overlap from the start are refused unless they are to merge.
-        let merges = rule == Collisions::Merge && touching.iter().any(|&pair| member.bodies.overlap(pair));
-        if merges || touching.iter().any(|&pair| member.bodies.approach(pair).is_some()) {
-            // The rows of the start are of before.
-            let at_start = request.times.iter().take_while(|&&t| t == scene.t0).count();
-            if at_start > 0 {
-                let nothing = Request { events: Vec::new(), ..request.clone() };
-                let _ = member.leg(scene, &nothing, (at_start, None), ticker)?;
-            }
-            if !member.collide(None) || member.outcome.rows == request.times.len() {
-                return Ok(member);
-            }
-            touching = member.bodies.touching();
-        }
+        let Some(mut found) = member.first(scene, request, first, ticker)? else { return Ok(member) };
         let end = request.times.len();
         loop {
-            let Some(pair) = member.leg(scene, request, (end, Some(&touching)), ticker)? else {
-                return Ok(member);
-            };
-            let goes_on = member.collide_and_look(scene, request, pair, ticker)?;
+            let goes_on = member.collide_and_look(scene, request, found, ticker)?;
             // Who has nothing more to record is where the collision has put it.
             if !goes_on || member.outcome.rows == end {
                 return Ok(member);
             }
-            if member.flights.is_none() {
-                touching = member.touching(Some(pair));
+            let touching = if member.flights.is_none() { member.touching(Some(found)) } else { Vec::new() };
+            match member.leg(scene, request, (end, Some(&touching)), ticker)? {
+                Some(next) => found = next,
+                None => return Ok(member),
             }
         }
+    }
+
+    /// Runs to the first contact beyond the start; the spheres that touch there.
+    fn first(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        first: Option<Leg>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Option<(usize, usize)>> {
+        if let Some(first) = first {
+            let names: Vec<usize> = (0..request.events.len()).collect();
+            return self.take(scene, request, &Remaining::of(&self.bodies.host), &names, first);
+        }
+        let mut touching = self.bodies.touching();
+        // Those that overlap from the start are refused unless they are to merge.
+        let merges = self.rule == Collisions::Merge && touching.iter().any(|&pair| self.bodies.overlap(pair));
+        if merges || touching.iter().any(|&pair| self.bodies.approach(pair).is_some()) {
+            // The rows of the start are of before.
+            let at_start = request.times.iter().take_while(|&&t| t == scene.t0).count();
+            if at_start > 0 {
+                let nothing = Request { events: Vec::new(), ..request.clone() };
+                let _ = self.leg(scene, &nothing, (at_start, None), ticker)?;
+            }
+            if !self.collide(None) || self.outcome.rows == request.times.len() {
+                return Ok(None);
+            }
+            touching = self.bodies.touching();
+        }
+        self.leg(scene, request, (request.times.len(), Some(&touching)), ticker)
     }
 
     /// Runs on to the next contact, or to the end; the spheres that touch there. None are looked for without those that
@@ -169,7 +185,7 @@ impl Member {
         let times = request.times[self.outcome.rows..end].to_vec();
         let asked = Request { max_steps, ..self.asked(times, events) };
         let (done, total) = ticker.control().progress();
-        let output = run_through(&scene, &asked, ticker)?;
+        let output = Leg::of(run_through(&scene, &asked, ticker)?)?;
         if whole.copies == 1 {
             // What a leg leaves to be done is counted with the next one.
             ticker.control().set_total(total + ticker.control().progress().0 - done);
@@ -224,11 +240,9 @@ impl Member {
         request: &Request,
         leg: &Remaining,
         names: &[usize],
-        mut output: Output,
+        output: Leg,
     ) -> Result<Option<(usize, usize)>> {
-        let Some(outcome) = output.outcomes.pop() else {
-            return Err(Error::Internal("a run without an outcome".to_owned()));
-        };
+        let outcome = output.outcome;
         self.begun = self.bodies.states();
         for (place, &body) in leg.bodies.iter().enumerate() {
             self.bodies.position[body] = output.reached.position[place];
@@ -254,7 +268,7 @@ impl Member {
             give_back(output.columns.position);
             give_back(output.columns.velocity);
         }
-        self.from = output.plan.from;
+        self.from = output.from;
         self.kept = output.kept.map(|kept| Kept { held: kept.held.of_bodies(&leg.places), ..kept });
         if outcome.ending == Ending::Stopped
             && let Some(((i, j), rest)) = output.events.contact()

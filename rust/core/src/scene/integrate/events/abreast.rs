@@ -3,6 +3,7 @@
 
 use super::super::super::events::{Event, Moving, Sight};
 use super::clear::{cubic, keeps_clear};
+use super::spheres_abreast::SpheresAbreast;
 use super::{Bodies, Watch};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Mask;
@@ -14,6 +15,8 @@ use crate::tiered;
 /// The events of eight units of one make-up, one in each lane. Those of the first are told side by side.
 pub(in super::super) struct Abreast<'a> {
     events: Vec<Seen<'a>>,
+    /// The spheres that may touch.
+    spheres: Option<SpheresAbreast>,
     bodies: Bodies,
     /// What each event saw at the last node.
     sights: Vec<Sight<Lanes>>,
@@ -35,9 +38,10 @@ struct Seen<'a> {
 impl<'a> Abreast<'a> {
     /// For units like the one under this watch, if what their events see can be told side by side.
     pub(in super::super) fn of(watch: &Watch<'a>) -> Option<Self> {
-        if watch.looks_at_all() {
-            return None;
-        }
+        let spheres = match &watch.contacts {
+            Some(contacts) => Some(SpheresAbreast::of(contacts, &watch.bodies)?),
+            None => None,
+        };
         let mut events = Vec::with_capacity(watch.events.len());
         for index in 0..watch.events.len() {
             let (event, bodies) = watch.own_event(index);
@@ -49,7 +53,7 @@ impl<'a> Abreast<'a> {
         }
         let sights = vec![Sight::default(); events.len()];
         let (bodies, watched) = (watch.bodies.clone(), watch.events.clone());
-        Some(Self { events, bodies, sights, fresh: Bits(0), one_by_one: Bits(0xff), watched })
+        Some(Self { events, spheres, bodies, sights, fresh: Bits(0), one_by_one: Bits(0xff), watched })
     }
 
     /// A unit begins in a lane.
@@ -57,6 +61,9 @@ impl<'a> Abreast<'a> {
         let bit = Bits(1 << (lane % WIDTH));
         self.fresh = self.fresh.or(bit);
         self.one_by_one = self.one_by_one.and(bit.not());
+        if let (Some(spheres), Some(contacts)) = (&mut self.spheres, &watch.contacts) {
+            spheres.begin(lane, contacts, watch.bodies.factors[0]);
+        }
         let moved = unit.origin.is_elsewhere() && self.events.iter().any(|seen| seen.event.asks_where());
         if moved || watch.events != self.watched {
             self.one_by_one = self.one_by_one.or(bit);
@@ -85,8 +92,11 @@ fn step_of_eight<V: Vector8>(
     h: &Lanes,
     state: &State<Lanes>,
 ) -> Bits {
-    let Abreast { events, bodies, sights, .. } = abreast;
-    let mut suspects = Bits(0);
+    let Abreast { events, spheres, bodies, sights, .. } = abreast;
+    let mut suspects = match spheres {
+        Some(spheres) => spheres.suspects(lanes, V::load(*h), bodies, state),
+        None => Bits(0),
+    };
     for index in 0..events.len() {
         let Seen { event, places } = &events[index];
         let both = [moving::<V>(bodies, places[0], state), moving::<V>(bodies, places[1], state)];

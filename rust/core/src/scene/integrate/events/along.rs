@@ -4,6 +4,7 @@
 use super::super::super::events::{Event, Sight};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
+use super::spheres::{Spheres, eight};
 use super::{Bodies, Watch};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::scale;
@@ -15,6 +16,8 @@ use crate::tiered;
 /// The events of a unit, and what they are functions of at nine nodes: steps lie in the lanes.
 pub(in super::super) struct Along<'a> {
     events: Vec<Seen<'a>>,
+    /// The spheres that may touch.
+    spheres: Option<Spheres>,
     bodies: Bodies,
     /// A step, in the plan's units.
     step: f64,
@@ -55,9 +58,10 @@ impl Seen<'_> {
 impl<'a> Along<'a> {
     /// Of a unit under this watch, if what its events see follows from how its bodies move.
     pub(in super::super) fn of(watch: &Watch<'a>, step: f64) -> Option<Self> {
-        if watch.looks_at_all() {
-            return None;
-        }
+        let spheres = match &watch.contacts {
+            Some(contacts) => Some(Spheres::of(contacts, watch.bodies.factors[0])?),
+            None => None,
+        };
         let mut events = Vec::with_capacity(watch.events.len());
         for index in 0..watch.events.len() {
             let (event, bodies) = watch.own_event(index);
@@ -69,12 +73,15 @@ impl<'a> Along<'a> {
             events.push(Seen { event, bodies, vectors, asks_where: event.asks_where() });
         }
         let unit_of_time = watch.job.plan.units.time;
-        Some(Self { events, bodies: watch.bodies.clone(), step, unit_of_time })
+        Some(Self { events, spheres, bodies: watch.bodies.clone(), step, unit_of_time })
     }
 
     /// Takes note in one of nine places of how the bodies move at a node, to which so many steps have led.
     #[inline(always)]
     pub(in super::super) fn note(&mut self, place: usize, unit: &Prepared, node: u64, state: &State<Lanes>) {
+        if let Some(spheres) = &mut self.spheres {
+            spheres.note(place, &self.bodies, state);
+        }
         for seen in &mut self.events {
             if seen.asks_where {
                 seen.note_where(
@@ -95,7 +102,7 @@ impl<'a> Along<'a> {
     /// The steps, of so many between those nodes, in which there may be zeros.
     pub(in super::super) fn suspects(&self, steps: usize) -> Bits {
         let h = scale(self.step, self.unit_of_time);
-        let mut suspects = Bits(0);
+        let mut suspects = self.spheres.as_ref().map_or(Bits(0), |spheres| spheres.suspects(self.step));
         let mut cubics = [Lanes([0.0; WIDTH]); 4];
         for index in 0..self.events.len() {
             let near = near(self, index, h, &mut cubics);
@@ -136,12 +143,4 @@ fn eight_steps<V: Vector8>(along: &Along<'_>, event: usize, h: f64, cubics: &mut
         }
     }
     near
-}
-
-/// The numbers of eight nodes, from the first or from the second on.
-#[inline(always)]
-fn eight<V: Vector8>(numbers: &[f64; WIDTH + 1], from: usize) -> V {
-    let mut lanes = [0.0; WIDTH];
-    lanes.copy_from_slice(&numbers[from..from + WIDTH]);
-    V::load(Lanes(lanes))
 }

@@ -87,6 +87,22 @@ impl Bodies {
         }
     }
 
+    /// Place, what it leaves out, velocity and what that leaves out of one of them, one component after the other, in the plan's
+    /// units.
+    #[inline(always)]
+    pub(super) fn numbers_of(
+        &self,
+        body: usize,
+        state: &State<Lanes>,
+        mut each: impl FnMut(usize, [f64; 4]),
+    ) {
+        let all = numbers(state);
+        for c in 0..self.components {
+            let at = self.places[body] + c * self.stride;
+            each(c, all.map(|numbers| numbers[at]));
+        }
+    }
+
     /// The row where one of them has its first coordinate.
     pub(super) fn row(&self, body: usize) -> usize {
         self.places[body] / WIDTH

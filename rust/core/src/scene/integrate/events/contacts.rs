@@ -3,7 +3,7 @@
 //! The one idea: a sweep along one axis finds the pairs whose boxes meet, so that N bodies cost N log N and not N²; each of
 //! these is then looked at as two bodies that come to the distance of their radii.
 
-use super::super::super::collisions::{Spheres, TOUCH, swept};
+use super::super::super::collisions::{TOUCH, swept};
 use super::super::super::events::{Event, Moving, What};
 use super::super::super::frame::Moved;
 use super::Watch;
@@ -30,16 +30,22 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    /// Of bodies in these places, with these indices in the scene, and how they move at the start.
-    pub(super) fn new(which: usize, spheres: &Spheres, indices: &[usize], before: &[Moving]) -> Self {
-        let radius = |&body: &usize| (spheres.radius[body], body);
+    /// Of the radii of all bodies and the pairs in contact, the indices of those that are looked at, and how they move at the
+    /// start.
+    pub(super) fn new(
+        which: usize,
+        (radius, touching): (&[f64], &[(usize, usize)]),
+        indices: &[usize],
+        before: &[Moving],
+    ) -> Self {
+        let radius = |&body: &usize| (radius[body], body);
         let mut contacts = Self {
             which,
             bodies: indices.iter().map(radius).collect(),
             touching: Vec::new(),
             boxes: Vec::new(),
         };
-        for &(i, j) in &spheres.touching {
+        for &(i, j) in touching {
             let place = |body: usize| indices.iter().position(|&own| own == body);
             if let (Some(i), Some(j)) = (place(i), place(j)) {
                 let value = contacts.value([i, j], before);
@@ -47,6 +53,22 @@ impl Contacts {
             }
         }
         contacts
+    }
+
+    /// How many bodies there are.
+    pub(super) fn count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// All pairs that may touch at all, and the sums of their radii.
+    pub(super) fn all_pairs(&self) -> impl Iterator<Item = ([usize; 2], f64)> {
+        let pairs = (0..self.bodies.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        pairs.map(|places| (places, self.length(places))).filter(|(_, length)| *length > 0.0)
+    }
+
+    /// The sum of the radii of two of them.
+    pub(super) fn length(&self, [i, j]: [usize; 2]) -> f64 {
+        self.bodies[i].0 + self.bodies[j].0
     }
 
     fn event(&self, [i, j]: [usize; 2], forward: bool) -> Event {
