@@ -1,11 +1,8 @@
 """Elements of many bodies at once: each as of that body alone, what is refused is named, and the cost is the core's."""
 
-import sys
-from collections.abc import Callable
-from types import FrameType
-
 import numpy as np
 import pytest
+from calls import python_calls
 
 import visviva as vv
 from visviva.orbits import Elements
@@ -16,23 +13,6 @@ def ring(count: int) -> vv.Scene:
     rng = np.random.default_rng(count)
     place, velocity = rng.normal(size=(count + 1, 3)), rng.normal(size=(count + 1, 3))
     return vv.Scene(vv.Particles([1.0, *[0.0] * count], place, velocity), vv.Gravity(1.0))
-
-
-def python_calls(work: Callable[[], object]) -> int:
-    """How many functions written in Python are called."""
-    calls = 0
-
-    def count(_: FrameType, event: str, __: object) -> None:
-        nonlocal calls
-        calls += event == "call"
-
-    before = sys.getprofile()
-    sys.setprofile(count)
-    try:
-        work()
-    finally:
-        sys.setprofile(before)
-    return calls
 
 
 @pytest.mark.parametrize("about", [0, 3, "jacobi", "center_of_mass"])

@@ -1,13 +1,11 @@
 """Parameters of a great many copies: arrays are looked at as a whole, and each copy is what it would be by itself."""
 
 import dataclasses
-import sys
-from collections.abc import Callable
-from types import FrameType
 from typing import Any
 
 import numpy as np
 import pytest
+from calls import python_calls
 
 import visviva as vv
 
@@ -27,23 +25,6 @@ KINDS: list[tuple[vv.forces.Force, dict[str, Any]]] = [
     (vv.CentralField(V.Coulomb(-1.0)), {"potential": [V.Coulomb(-1.0), V.Yukawa(1.0, 2.0)] * (MANY // 2)}),
     (PUSH, {"values": UP[:, None]}),
 ]
-
-
-def python_calls(work: Callable[[], object]) -> int:
-    """How many functions written in Python are called."""
-    calls = 0
-
-    def count(_: FrameType, event: str, __: object) -> None:
-        nonlocal calls
-        calls += event == "call"
-
-    before = sys.getprofile()
-    sys.setprofile(count)
-    try:
-        work()
-    finally:
-        sys.setprofile(before)
-    return calls
 
 
 @pytest.mark.parametrize(("force", "own"), KINDS, ids=[type(force).__name__ for force, _ in KINDS])
