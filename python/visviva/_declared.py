@@ -7,6 +7,7 @@ and changed to other units. A force or a potential that the core registers needs
 from __future__ import annotations
 
 from dataclasses import dataclass, field, make_dataclass
+from itertools import repeat
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -18,16 +19,26 @@ from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from visviva.potentials import Potential
 
-__all__ = ["Declared", "Parameter", "checked_potential", "class_from_entry", "unit_change", "wrapped"]
+__all__ = [
+    "VECTORS",
+    "Declared",
+    "Parameter",
+    "as_comparable",
+    "checked_potential",
+    "class_from_entry",
+    "unit_change",
+    "wrapped",
+]
 
-_VECTORS = ("vector", "axial_vector", "direction", "point")
-_QUANTITIES = ("number", "numbers", *_VECTORS)  # what has a dimension, and says so where it is none
+VECTORS = ("vector", "axial_vector", "direction", "point")
+_ARRAYS = ("numbers", "table", *VECTORS)
+_QUANTITIES = ("number", "numbers", *VECTORS)  # what has a dimension, and says so where it is none
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
@@ -65,11 +76,11 @@ class Parameter:
             return self.choices[int(self.default)]
         if self.kind == "indices":
             return ()
-        return (self.default,) * 3 if self.kind in _VECTORS else self.default
+        return (self.default,) * 3 if self.kind in VECTORS else self.default
 
     def check(self, value: Any) -> Any:
         """The value as it is kept: frozen, comparable, of one type for each kind."""
-        if self.kind in _VECTORS:
+        if self.kind in VECTORS:
             vector = float_array(self.name, value, (3,))
             if self.kind == "direction" and not vector.any():
                 raise InvalidInput(self.name, "expected a direction, got 0.0 in every component")
@@ -130,12 +141,12 @@ class Parameter:
 
     def to_core(self, value: Any) -> Any:
         """What the core and a file know it by."""
-        if self.kind in ("numbers", "table", *_VECTORS):
-            return np.atleast_1d(np.array(value, dtype=float))
+        if self.kind in _ARRAYS:
+            return np.array(value, dtype=float, ndmin=1)
         if self.kind == "indices":
             if isinstance(value, str | tuple):
                 raise InvalidInput(self.name, f"expected indices of bodies outside a scene, got {value!r}")
-            return np.atleast_1d(np.array(value, dtype=np.int64))
+            return np.array(value, dtype=np.int64, ndmin=1)
         return value._to_core() if self.kind == "potential" else value
 
     def resolved(self, value: Any, names: tuple[str, ...], count: int) -> Any:
@@ -182,6 +193,7 @@ class Declared:
     _parameters: ClassVar[tuple[Parameter, ...]]
     _at_rest: ClassVar[str]
     _one_way: ClassVar[str]
+    _checked_together: ClassVar[tuple[str, ...]] = ()  # what is refused for the values of others, too
 
     def __post_init__(self) -> None:
         for parameter in self._parameters:
@@ -218,12 +230,15 @@ class Declared:
         return all(np.array_equal(_as_kept(value), _as_kept(theirs[name])) for name, value in self._values().items())
 
     def __hash__(self) -> int:
-        # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
-        keys = (
-            value.tobytes() if isinstance(value, np.ndarray) else value
-            for value in map(_zeroed, map(_as_kept, self._values().values()))
-        )
-        return hash((type(self).__name__, *keys))
+        return hash((type(self), *map(as_comparable, self._values().values())))
+
+    def _each_with(self, columns: Mapping[str, Sequence[Any]], count: int) -> list[Self]:
+        """So many of it with values of their own, as `Parameter.check` gives them."""
+        made = [object.__new__(type(self)) for _ in range(count)]
+        for name, value in self._values().items():
+            for one, own in zip(made, columns.get(name, repeat(value, count)), strict=True):
+                object.__setattr__(one, name, own)
+        return made
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), tuple(self._values().values())
@@ -377,7 +392,8 @@ def _as_kept(value: Any) -> Any:
     return value.item() if isinstance(value, np.ndarray) and value.shape == (1,) else value
 
 
-def _zeroed(value: Any) -> Any:
-    if isinstance(value, np.ndarray) and value.dtype.kind == "f":
-        return value + 0.0
-    return value
+def as_comparable(value: Any) -> Any:
+    """What has a hash, and is equal where values are kept that are."""
+    kept = _as_kept(value)
+    # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0; numbers by themselves have the hash of that.
+    return (kept + 0.0 if kept.dtype.kind == "f" else kept).tobytes() if isinstance(kept, np.ndarray) else kept

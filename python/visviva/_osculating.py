@@ -22,12 +22,15 @@ from visviva.orbits import Elements, elements
 from visviva.orbits._elements import labeled
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+    from typing import TypeAlias
 
     from numpy.typing import NDArray
 
     from visviva.forces import Force
     from visviva.runnable import Runnable
+
+    _Relative: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = ["elements_of", "gravitational_constant"]
 
@@ -65,8 +68,8 @@ def elements_of(
     if isinstance(start, EnsembleScene):
         # Copies may have a G of their own.
         mass = mass[:, None, :]
-        constant = np.array([gravitational_constant(forces, G) for forces in start.forces])[:, None]
-        turning = np.array([_turning(forces) for forces in start.forces])[:, None, None]
+        constant = _of_copies(start.forces, lambda forces: gravitational_constant(forces, G))[:, None, None]
+        turning = _of_copies(start.forces, _turning)[:, None, None]
     else:
         assert isinstance(start, Scene)
         mass, constant, turning = mass[0], gravitational_constant(start.forces, G), _turning(start.forces)
@@ -95,25 +98,32 @@ def elements_of(
             )
         # In a copy nothing is about it from then on.
         gone = gone | gone[..., parent, None]
+    columns = np.array(chosen, dtype=np.intp)
     with np.errstate(over="ignore", invalid="ignore"):  # _check says it by name
-        parts = _relative(position, velocity, mass, chosen, parent)
-    axes = (*position.shape[:-2], len(chosen))
-    r, v = np.empty((*axes, 3)), np.empty((*axes, 3))
-    mu = np.empty(axes)
-    for column, (body, (apart, rate, attracting)) in enumerate(zip(chosen, parts, strict=True)):
-        part = gone[..., body, None]
-        r[..., column, :], v[..., column, :] = np.where(part, np.nan, apart), np.where(part, np.nan, rate)
-        with np.errstate(over="ignore"):
-            mu[..., column] = np.where(part[..., 0], 1.0, constant * (attracting + mass[..., body]))
-        lost = ~np.isfinite(apart) & np.isfinite(position[..., body, :])
-        _check(r[..., column, :], lost, mu[..., column], attracting, body_label(body, names), parent, names)
-    found, along = _conics(mu, r, v), dict(rows or {})
+        r, v, attracting = _relative(position, velocity, mass, columns, parent)
+    lost = ~np.isfinite(r) & np.isfinite(position[..., columns, :])
+    part = gone[..., columns]
+    if part.any():
+        r, v = np.where(part[..., None], np.nan, r), np.where(part[..., None], np.nan, v)
+    with np.errstate(over="ignore"):
+        mu = np.where(part, 1.0, constant * (attracting + mass[..., columns]))
+    _check(r, lost, mu, attracting, chosen, parent, names)
+    found, along = _conics(np.broadcast_to(mu, r.shape[:-1]), r, v), dict(rows or {})
     if isinstance(bodies, str | int | np.integer):
         # Of one body alone, without the axis over bodies.
-        found = {name: values[(slice(None),) * (len(axes) - 1) + (0,)] for name, values in found.items()}
+        found = {name: values[(slice(None),) * (r.ndim - 2) + (0,)] for name, values in found.items()}
     else:
         along["body"] = labels(names, count)[chosen]
     return labeled(found, along)
+
+
+def _of_copies(forces: tuple[tuple[Force, ...], ...], value: Callable[[tuple[Force, ...]], Any]) -> NDArray[np.float64]:
+    """What is asked of the forces of each copy: once of those that copies share."""
+    found: dict[int, Any] = {}
+    for own in forces:
+        if id(own) not in found:
+            found[id(own)] = value(own)
+    return np.array([found[id(own)] for own in forces])
 
 
 def _turning(forces: tuple[Force, ...]) -> NDArray[np.float64]:
@@ -137,49 +147,65 @@ def _check(
     lost: NDArray[np.bool_],
     mu: NDArray[np.float64],
     attracting: NDArray[np.float64],
-    who: str,
+    chosen: list[int],
     parent: str | int,
     names: tuple[str, ...],
 ) -> None:
-    """Refuse by name what has no conic."""
+    """Refuse by name the first body that has no conic, for the first reason that it has."""
+    massless = ~(attracting > 0.0) if isinstance(parent, str) else np.zeros(attracting.shape, dtype=bool)
+    coincident = (r == 0.0).all(axis=-1)
+    reasons: tuple[Any, ...] = (massless, mu == 0.0, ~np.isfinite(mu), lost.any(axis=-1), coincident)
+    wrong = [np.broadcast_to(each.any(axis=tuple(range(each.ndim - 1))), len(chosen)) for each in reasons]
+    refused = np.logical_or.reduce(wrong)
+    if not refused.any():
+        return
+    column = int(np.argmax(refused))
+    has_no_mass, attracts_not, is_beyond, is_lost, _ = (each[column] for each in wrong)
+    who = body_label(chosen[column], names)
     whom = {CENTER_OF_MASS: "the center of mass of the others", JACOBI: "the center of mass of those before it"}.get(
         str(parent)
     ) or body_label(int(parent), names)
-    if isinstance(parent, str) and not np.all(attracting > 0.0):
+    if has_no_mass:
         raise InvalidInput("about", f"expected bodies with mass, but {whom} has none for {who}")
-    if not np.all(mu != 0.0):
+    if attracts_not:
         raise InvalidInput(
             "about", f"expected an orbit, but neither {who} nor {whom} attracts: G times their mass is 0"
         )
-    if not np.isfinite(mu).all():
+    if is_beyond:
         raise InvalidInput("G", "expected units in which G times the masses is within the range of float64")
-    if lost.any():
+    if is_lost:
         raise InvalidInput("about", f"expected a distance of {who} from {whom} within the range of float64")
-    coincident = (r == 0.0).all(axis=-1)
-    if coincident.any():
-        row = tuple(np.argwhere(coincident)[0].tolist())
-        raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
+    row = tuple(np.argwhere(coincident[..., column])[0].tolist())
+    raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
 
 
 def _relative(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     mass: NDArray[np.float64],
-    chosen: list[int],
+    chosen: NDArray[np.intp],
     parent: str | int,
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
-    """Place and velocity from what each body is about, and the mass there."""
-    if parent == JACOBI:
-        return _jacobi(position, velocity, mass, chosen)
-    if isinstance(parent, str):
-        return [_others(position, velocity, mass, body) for body in chosen]
-    place, rate = position[..., parent, :], velocity[..., parent, :]
-    return [(position[..., body, :] - place, velocity[..., body, :] - rate, mass[..., parent]) for body in chosen]
+) -> _Relative:
+    """Places and velocities (…, K, 3) from what each body is about, and the mass there, (…, K) or (…, 1)."""
+    if isinstance(parent, int):
+        around = slice(parent, parent + 1)
+        r, v = (values[..., chosen, :] - values[..., around, :] for values in (position, velocity))
+        return r, v, mass[..., around]
+    r, v = (np.empty((*position.shape[:-2], len(chosen), 3)) for _ in range(2))
+    attracting = np.empty((*mass.shape[:-1], len(chosen)))
+    parts = (
+        _jacobi(position, velocity, mass, chosen)
+        if parent == JACOBI
+        else (_others(position, velocity, mass, body) for body in chosen)
+    )
+    for column, part in enumerate(parts):
+        r[..., column, :], v[..., column, :], attracting[..., column] = part
+    return r, v, attracting
 
 
 def _jacobi(
-    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], chosen: list[int]
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
+    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], chosen: NDArray[np.intp]
+) -> list[_Relative]:
     """Each relative to the center of mass of those before it, which moves by the share of each that is added."""
     found = {}
     center, rate, inside = position[..., 0, :], velocity[..., 0, :], mass[..., 0]
@@ -189,12 +215,12 @@ def _jacobi(
         total = inside + own
         share = np.divide(own, total, out=np.zeros_like(total), where=total > 0.0)[..., None]
         center, rate, inside = center + share * r, rate + share * v, total
-    return [found[body] for body in chosen]
+    return [found[body] for body in chosen.tolist()]
 
 
 def _others(
     position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], body: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+) -> _Relative:
     """Relative to the center of mass of all others: the mean of the distances, so that none is lost in a great sum."""
     weights = np.delete(mass, body, axis=-1)
     total = weights.sum(axis=-1)
@@ -212,11 +238,14 @@ def _others(
 def _conics(mu: NDArray[np.float64], r: NDArray[np.float64], v: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """The elements of every state; NaN where the state is: of a copy that has failed, of a part of another body."""
     known = np.isfinite(r).all(axis=-1) & np.isfinite(v).all(axis=-1)
-    found = elements(mu[known], r[known], v[known])
+    everywhere = bool(known.all())
+    found = elements(mu, r, v) if everywhere else elements(mu[known], r[known], v[known])
     spread: dict[str, Any] = {}
     for name in Elements.__slots__:
         values = getattr(found, name)
-        spread[name] = np.full((*mu.shape, *values.shape[1:]), np.nan)
-        spread[name][known] = values
+        if not everywhere:
+            values, present = np.full((*mu.shape, *values.shape[1:]), np.nan), values
+            values[known] = present
+        spread[name] = values
     spread["mu"] = np.where(known, mu, np.nan)
     return spread

@@ -1,24 +1,33 @@
 """Forces whose parameters differ from copy to copy of an ensemble.
 
 The one idea: a copy's forces are forces like any, made from the scene's with one value put in the place of another. So
-whatever a force checks of its parameters it checks of each.
+whatever a force checks of its parameters it checks of each: of arrays at once where that is the same, and copy by copy
+for what is refused, so that it is named.
 """
 
 from __future__ import annotations
 
+from itertools import repeat
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._declared import VECTORS, as_comparable
 from visviva._keywords import did_you_mean
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce, Force
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
+    from typing import TypeAlias
+
+    from numpy.typing import NDArray
 
     from visviva import _core
+    from visviva._declared import Parameter
     from visviva.scene import Scene
+
+    _Values: TypeAlias = NDArray[np.float64] | Sequence[Any]
 
 __all__ = ["described", "forces_of_copies"]
 
@@ -29,7 +38,7 @@ def forces_of_copies(
     """The forces of each copy: those of the scene with the values that the copies have of their own."""
     if not hasattr(parameters, "items") or not parameters:
         raise InvalidInput("parameters", f"expected a dictionary {{force: {{name: values}}}}, got {parameters!r}")
-    values: dict[int, dict[str, Sequence[Any]]] = {}
+    values: dict[int, dict[str, _Values]] = {}
     for which, named in parameters.items():
         place = _place(scene, which)
         if not hasattr(named, "items") or not named:
@@ -42,17 +51,15 @@ def forces_of_copies(
                 raise InvalidInput("parameters", f"expected parameters of {known}, got {name!r}{hint}")
             by_copy = _bodies_by_copy if kinds[name] == "indices" else _values_by_copy
             values.setdefault(place, {})[name] = by_copy(name, given)
-    count = _count({name: given for named in values.values() for name, given in named.items()})
-    return tuple(
-        tuple(_with_values(scene, force, values.get(place), copy) for place, force in enumerate(scene.forces))
-        for copy in range(count)
-    )
+    count = _count([pair for named in values.values() for pair in named.items()])
+    columns = (_of_copies(scene, force, values.get(place), count) for place, force in enumerate(scene.forces))
+    return tuple(zip(*columns, strict=True))
 
 
-def _count(values: Mapping[str, Sequence[Any]]) -> int:
+def _count(values: Sequence[tuple[str, _Values]]) -> int:
     """How many copies there are values for: as many of each."""
-    first, given = next(iter(values.items()))
-    for name, other in values.items():
+    first, given = values[0]
+    for name, other in values:
         if len(other) != len(given):
             raise InvalidInput(
                 "parameters", f"expected values of {name!r} for {len(given)} copies like {first}, got {len(other)}"
@@ -76,18 +83,61 @@ def _own_values(force: Force, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
                 "parameters", f"expected parameters of the expressions {list(names)}, got {unknown!r}{hint}"
             )
         return named
-    rows = np.tile(np.asarray(force.values, dtype=float), (_count(own), 1))
+    rows = np.tile(np.asarray(force.values, dtype=float), (_count([*own.items()]), 1))
     for name, given in own.items():
-        if np.ndim(given) != 1:
+        if not isinstance(given, np.ndarray) or given.ndim != 1:
             raise InvalidInput("parameters", f"expected one number {name!r} for each copy, got {given!r}")
         rows[:, names.index(name)] = given
     return {**{name: given for name, given in named.items() if str(name) not in names}, "values": rows}
 
 
-def _with_values(scene: Scene, force: Force, values: dict[str, Sequence[Any]] | None, copy: int) -> Force:
+def _of_copies(scene: Scene, force: Force, values: Mapping[str, _Values] | None, count: int) -> Iterable[Force]:
+    """One force of the scene as each copy has it."""
     if values is None:
-        return force
-    own = {name: given[copy] for name, given in values.items()}
+        return repeat(force, count)
+    kinds = {parameter.name: parameter for parameter in force._parameters}
+    checked = {
+        name: None if name in force._checked_together else _checked(kinds[name], given)
+        for name, given in values.items()
+    }
+    right = {name: column for name, column in checked.items() if column is not None}
+    if len(right) == len(values):
+        return force._each_with(right, count)
+    # One after the other, as the copies are asked for: the first that is refused is named.
+    rows = {
+        name: given.tolist() if isinstance(given, np.ndarray) and given.ndim == 1 else given
+        for name, given in values.items()
+    }
+    return (
+        _with_values(scene, force, {name: given[copy] for name, given in rows.items()}, copy) for copy in range(count)
+    )
+
+
+def _checked(parameter: Parameter, given: _Values) -> Sequence[Any] | None:
+    """What `Parameter.check` makes of the value of each copy, at once; None where that is for each by itself to say."""
+    kind, sign = parameter.kind, parameter.sign
+    if not isinstance(given, np.ndarray):
+        from visviva.potentials import Potential
+
+        return given if kind == "potential" and all(isinstance(each, Potential) for each in given) else None
+    numbers = kind in ("number", "numbers")
+    in_range = np.isfinite(given)
+    if numbers and sign != "any":
+        in_range &= given > 0.0 if sign == "positive" else given >= 0.0
+    if not in_range.all():
+        return None
+    if given.ndim == 1:
+        return given.tolist() if numbers else None
+    if kind in VECTORS and given.shape[1:] == (3,) and (kind != "direction" or given.any(axis=1).all()):
+        return list(map(tuple, given.tolist()))
+    if kind in ("numbers", "table") and given.ndim == 2:
+        kept = np.array(given, order="C")
+        kept.flags.writeable = False
+        return list(kept)
+    return None
+
+
+def _with_values(scene: Scene, force: Force, own: dict[str, Any], copy: int) -> Force:
     try:
         changed = type(force)(**{**force._values(), **own})
         return changed._resolved(scene.particles.names, len(scene.particles))
@@ -95,18 +145,17 @@ def _with_values(scene: Scene, force: Force, values: dict[str, Sequence[Any]] | 
         raise InvalidInput("parameters", f"{type(force).__name__} of copy {copy}: {error}") from error
 
 
-def _values_by_copy(name: str, given: Any) -> Sequence[Any]:
-    """One value for each copy, along the first axis."""
+def _values_by_copy(name: str, given: Any) -> _Values:
+    """One value for each copy, along the first axis: numbers as an array."""
     if isinstance(given, list | tuple) and given and not isinstance(given[0], int | float | list | tuple | np.ndarray):
         return given
     try:
         array = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = np.zeros(())
     if array.ndim == 0 or len(array) == 0:
         raise _without_axis(name, given)
-    values: list[Any] = array.tolist() if array.ndim == 1 else list(array)
-    return values
+    return array
 
 
 def _bodies_by_copy(name: str, given: Any) -> Sequence[Any]:
@@ -155,8 +204,38 @@ def _names(force: object) -> tuple[str, ...]:
 
 def described(copies: tuple[tuple[Force, ...], ...]) -> _core._OwnForces:
     """What the core and a file are told: each set of forces once, and which of them each copy has."""
-    sets: dict[tuple[Force, ...], int] = {}
-    of_copy = [sets.setdefault(forces, len(sets)) for forces in copies]
-    # One description of each: to the core forces are the same if they are one object.
-    each = {force: force._to_core() for forces in sets for force in forces}
-    return [[each[force] for force in forces] for forces in sets], of_copy
+    told = [_told(column) for column in zip(*copies, strict=True)]
+    if not told:
+        return [[]], [0] * len(copies)
+    sets: dict[tuple[int, ...], int] = {}
+    of_copy = [sets.setdefault(which, len(sets)) for which in zip(*(each for _, each in told), strict=True)]
+    chosen = ([each[one] for one in which] for (each, _), which in zip(told, zip(*sets, strict=True), strict=True))
+    return list(map(list, zip(*chosen, strict=True))), of_copy
+
+
+def _told(column: tuple[Force, ...]) -> tuple[list[dict[str, Any]], list[int]]:
+    """One force as the copies have it: its descriptions, and which of them is that of each copy.
+
+    What is equal has one description: to the core forces are the same if they are one object.
+    """
+    objects = {id(force): force for force in column}
+    first = column[0]
+    by_parameter = ((p, [getattr(force, p.name) for force in objects.values()]) for p in first._parameters)
+    # Only in these they may differ.
+    own = [(p, values) for p, values in by_parameter if len(set(map(id, values))) > 1]
+    if not own:
+        return [first._to_core()], [0] * len(column)
+    keys = (values if p.kind == "number" else map(as_comparable, values) for p, values in own)
+    numbers: dict[tuple[Any, ...], int] = {}
+    places: list[int] = []
+    of_object = {}
+    for place, (which, key) in enumerate(zip(objects, zip(*keys, strict=True), strict=True)):
+        number = of_object[which] = numbers.setdefault(key, len(places))
+        if number == len(places):
+            places.append(place)
+    rest = first._to_core()
+    descriptions = [rest.copy() for _ in places]
+    for p, values in own:
+        for description, place in zip(descriptions, places, strict=True):
+            description[p.name] = p.to_core(values[place])
+    return descriptions, [of_object[id(force)] for force in column]

@@ -16,7 +16,6 @@ from visviva._text import count
 from visviva._turning import checked_turning, core_rigid_of_copies, turning_of_copies
 from visviva.ensemble_trajectory import EnsembleTrajectory, one_or_some, rows_of
 from visviva.errors import InvalidInput
-from visviva.particles import Particles
 from visviva.request import StreamRequest, asked_by
 from visviva.runnable import Runnable
 
@@ -153,16 +152,20 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __getitem__(self, index: slice) -> EnsembleScene: ...
     def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
         chosen = one_or_some(index, len(self))
-        mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
+        state = {name: getattr(self, name)[chosen] for name in ("mass", "position", "velocity", "radius")}
+        own = turning_of_copies(self._keywords, chosen)
         continuation = continuation_of_copies(self._keywords["continuation"], rows_of(chosen))
         if isinstance(chosen, slice):
-            own = turning_of_copies(self._keywords, chosen)
-            radius = None if self._keywords["radius"] is None else self.radius[chosen]
-            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius, **own)
+            if self._keywords["radius"] is None:
+                del state["radius"]
+            some = EnsembleScene(self.scene, **state, **own)
             return with_continuation(some._own(self.forces[chosen]), continuation)
-        bodies = Particles(mass, position, velocity, self.scene.particles.names, self.radius[chosen])
-        own = turning_of_copies(self._keywords, chosen)
-        copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own)
+        bodies = self.scene.particles._in_state(**{name: read_only(array) for name, array in state.items()})
+        told = self._keywords["forces"]
+        if self._keywords["own_forces"] is not None:
+            sets, which = self._keywords["own_forces"]
+            told = sets[which[chosen]]
+        copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, told=told, **own)
         if self._keywords["radius"] is not None:
             copy._keywords["radius"] = bodies.radius[None]
         return with_continuation(copy, continuation)

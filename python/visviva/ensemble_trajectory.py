@@ -67,10 +67,11 @@ class EnsembleTrajectory(Recorded):
     ((2, 2, 2, 3), (2, 2, 3))
     """
 
-    __slots__ = ("ensemble",)
+    __slots__ = ("_lines", "ensemble")
 
     _row_axes = ("copy", "time")
     ensemble: EnsembleScene
+    _lines: dict[str, tuple[NDArray[np.intp], NDArray[np.intp]]]
 
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
         from visviva.ensemble import EnsembleScene
@@ -80,6 +81,7 @@ class EnsembleTrajectory(Recorded):
         )
         super().__init__(result)
         object.__setattr__(self, "ensemble", ensemble)
+        object.__setattr__(self, "_lines", {})
 
     def __len__(self) -> int:
         return len(self.ensemble)
@@ -101,12 +103,30 @@ class EnsembleTrajectory(Recorded):
         result["status"] = self.status[rows]
         for table in ("events", "collisions"):
             if table in self._result:
-                result[table] = _rows_of_copies(self._result[table], range(len(self))[rows])
-        own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
-        result["stats"] = {**result["stats"], **own}
+                result[table] = self._rows_of_copies(table, range(len(self))[rows])
+        own = ((name, each) for name, each in result["per_trajectory"].items() if name in result["stats"])
+        # The sum of one number would take longer than all the rest.
+        totals = {name: each.item() if len(each) == 1 else int(each.sum()) for name, each in own}
+        result["stats"] = {**result["stats"], **totals}
         if isinstance(chosen, slice):
             return EnsembleTrajectory(self.ensemble[chosen], result)
         return Trajectory(self.ensemble[chosen], result)
+
+    def _rows_of_copies(self, table: str, copies: range) -> dict[str, NDArray[Any]]:
+        """The lines of some copies in a table, where they are numbered anew."""
+        found = self._result[table]
+        if table not in self._lines:
+            # All lines by copies, as they come in each, and where those of each begin: sought once, not for each copy.
+            order = np.argsort(found["member"], kind="stable")
+            self._lines[table] = order, np.searchsorted(found["member"][order], np.arange(len(self) + 1))
+        order, begin = self._lines[table]
+        if copies.step == 1:
+            chosen, first = order[begin[copies.start] : begin[copies.stop]], copies.start
+            return {name: array[chosen] for name, array in found.items()} | {"member": found["member"][chosen] - first}
+        lines = [order[begin[copy] : begin[copy + 1]] for copy in copies]
+        chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])
+        number = np.repeat(np.arange(len(lines), dtype=np.int64), [len(line) for line in lines])
+        return {name: array[chosen] for name, array in found.items()} | {"member": number}
 
     def _elsewhere(self, name: str) -> str:
         return f"; each copy has one: out[i].{name}" if hasattr(Trajectory, name) else super()._elsewhere(name)
@@ -278,15 +298,6 @@ def one_or_some(index: Any, count: int) -> int | slice:
 def rows_of(chosen: int | slice) -> slice:
     """The rows of what `one_or_some` gave."""
     return chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
-
-
-def _rows_of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
-    """The lines of some copies, which are numbered anew."""
-    lines = [np.flatnonzero(events["member"] == copy) for copy in copies]
-    chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])
-    table = {name: array[chosen] for name, array in events.items()}
-    table["member"] = np.repeat(np.arange(len(lines), dtype=np.int64), [len(line) for line in lines])
-    return table
 
 
 def __dir__() -> list[str]:

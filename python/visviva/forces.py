@@ -200,7 +200,11 @@ def _in_units_that_fit(force: Any) -> None:
 
 # What a class has beside what is declared.
 _FURTHER: dict[str, dict[str, Any]] = {
-    "expressed_force": {"__repr__": _formula_of, "__post_init__": _in_units_that_fit}
+    "expressed_force": {
+        "__repr__": _formula_of,
+        "__post_init__": _in_units_that_fit,
+        "_checked_together": ("length", "mass", "time"),
+    }
 }
 _BY_NAME = {
     entry["name"]: class_from_entry(entry, Force, __name__, _FURTHER.get(entry["name"], {})) for entry in _core.forces()

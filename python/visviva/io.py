@@ -208,7 +208,15 @@ def _run_from_file(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory
         )
         if header.get("own_forces") is not None:
             sets, of_copy = header["own_forces"]
-            own = [tuple(force_from_core(description) for description in forces) for forces in sets]
+            of_first = list(map(force_from_core, sets[0]))
+            # Most sets have most forces of the first: made once, they are checked and compared once.
+            own = [
+                tuple(
+                    known if description == told else force_from_core(description)
+                    for description, told, known in zip(forces, sets[0], of_first, strict=True)
+                )
+                for forces in sets
+            ]
             copies = copies._own(tuple(own[which] for which in of_copy))
         run = EnsembleTrajectory(with_continuation(copies, before), result)
     else:

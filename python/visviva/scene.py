@@ -163,6 +163,7 @@ class Scene(Runnable[Trajectory], Framed):
         t0: float,
         rigid_bodies: RigidBodies | None,
         body_forces: tuple[BodyForce, ...],
+        told: list[dict[str, Any]] | None = None,
     ) -> None:
         object.__setattr__(self, "particles", particles)
         object.__setattr__(self, "forces", forces)
@@ -173,9 +174,9 @@ class Scene(Runnable[Trajectory], Framed):
             "mass": particles.mass[None],
             "position": particles.position[None],
             "velocity": particles.velocity[None],
-            "radius": particles.radius[None] if particles.radius.any() else None,
+            "radius": particles.radius[None] if np.count_nonzero(particles.radius) else None,
             "rigid": None if rigid_bodies is None else described(rigid_bodies, body_forces),
-            "forces": [force._to_core() for force in forces],
+            "forces": [force._to_core() for force in forces] if told is None else told,
             "own_forces": None,
             "t0": t0,
             "continuation": None,
@@ -480,11 +481,12 @@ class Scene(Runnable[Trajectory], Framed):
         forces: Iterable[Force],
         t0: float,
         change: Callable[[Any], Any] | None = None,
+        told: list[dict[str, Any]] | None = None,
         **turning: Any,
     ) -> Scene:
         scene = object.__new__(type(self))
         if self.rigid_bodies is None:
-            scene._set(particles, tuple(forces), number("t0", t0), None, ())
+            scene._set(particles, tuple(forces), number("t0", t0), None, (), told)
             return scene
         rigid, loads = self.rigid_bodies, self.body_forces
         if change is not None:
@@ -492,7 +494,7 @@ class Scene(Runnable[Trajectory], Framed):
         own = {name: getattr(particles, name)[-len(rigid) :] for name in ("mass", "position", "velocity")}
         rigid = rigid._changed(**(own | turning))
         points = with_centers([particles[: len(particles) - len(rigid)]], rigid, particles.names)
-        scene._set(points, tuple(forces), number("t0", t0), rigid, loads)
+        scene._set(points, tuple(forces), number("t0", t0), rigid, loads, told)
         return scene
 
 
