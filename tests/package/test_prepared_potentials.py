@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def scene(potential: vv.potentials.Potential) -> vv.Scene:
