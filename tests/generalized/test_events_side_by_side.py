@@ -46,8 +46,8 @@ def compare(ensemble: Any, looked_for: list[Any], span: Any, how: dict[str, Any]
             assert own.final.t0 == alone.final.t0
             np.testing.assert_array_equal(own.final.position, alone.final.position)
             np.testing.assert_array_equal(own.position, alone.position)
-            assert out.steps[copy] == alone.stats.steps
-            assert out.evaluations[copy] == alone.stats.evaluations
+            assert out.steps[copy] == alone.steps
+            assert out.evaluations[copy] == alone.evaluations
             for column in ("which", "t", "position", "velocity"):
                 np.testing.assert_array_equal(getattr(own.events, column), getattr(alone.events, column))
     return out

@@ -11,10 +11,11 @@ import pytest
 import visviva as vv
 
 COPIES = 19
+LENGTHS = np.linspace(0.2, 0.8, COPIES)
 METHODS: list[dict[str, Any]] = [
-    {"method": "leapfrog", "dt": 0.01},
-    {"method": "rk4", "dt": 0.02},
-    {"method": "stormer13", "dt": 0.02},
+    {"method": "leapfrog", "dt": 0.005},
+    {"method": "rk4", "dt": 0.01},
+    {"method": "stormer13", "dt": 0.005},
     {"method": "dop853"},
     {"method": "verner98"},
     {"method": "taylor"},
@@ -50,38 +51,34 @@ def compare(scene: vv.Scene, softening: np.ndarray[Any, Any], how: dict[str, Any
 @pytest.mark.parametrize("bodies", BODIES)
 def test_gravity(bodies: str, planar: bool, how: dict[str, Any]) -> None:
     scene = vv.Scene(cluster(BODIES[bodies], 0, planar), vv.Gravity(1.0, softening=0.1))
-    compare(scene, np.linspace(0.05, 0.4, COPIES), how)
+    compare(scene, LENGTHS, how)
 
 
 @each_method
 def test_gravity_on_massless_bodies(how: dict[str, Any]) -> None:
-    compare(vv.Scene(cluster(3, 4, False), vv.Gravity(1.0, softening=0.1)), np.linspace(0.05, 0.4, COPIES), how)
+    compare(vv.Scene(cluster(3, 4, False), vv.Gravity(1.0, softening=0.1)), LENGTHS, how)
 
 
 @each_method
 def test_charges(how: dict[str, Any]) -> None:
     charges = np.array([0.5, -0.3, 0.4, -0.6])
     scene = vv.Scene(cluster(4, 0, False), vv.Coulomb(charges, k=1.0, softening=0.1))
-    compare(scene, np.linspace(0.05, 0.4, COPIES), how)
+    compare(scene, LENGTHS, how)
 
 
 @each_method
 def test_some_without_any(how: dict[str, Any]) -> None:
     """These have other kernels, and keep the bits that they have alone, too."""
-    softening = np.linspace(0.05, 0.4, COPIES)
+    softening = LENGTHS.copy()
     softening[3] = 0.0
     compare(vv.Scene(cluster(3, 0, False), vv.Gravity(1.0, softening=0.1)), softening, how)
 
 
 @each_method
-def test_beside_an_oscillator(how: dict[str, Any]) -> None:
-    compare(
-        vv.Scene(
-            cluster(3, 2, False), vv.Gravity(1.0, softening=0.1), vv.CentralField(vv.potentials.Plummer(-1.0, 1.0))
-        ),
-        np.linspace(0.05, 0.4, COPIES),
-        how,
-    )
+def test_beside_a_potential(how: dict[str, Any]) -> None:
+    field = vv.CentralField(vv.potentials.Plummer(-1.0, 1.0))
+    if how["method"] != "taylor":  # which takes no central field
+        compare(vv.Scene(cluster(3, 0, False), vv.Gravity(1.0, softening=0.1), field), LENGTHS, how)
 
 
 def test_lengths_of_their_own_cost_what_one_for_all_costs() -> None:

@@ -62,16 +62,15 @@ struct Slot<'a> {
     smallest: f64,
     /// Where the step that is tried begins.
     from: f64,
-    /// Evaluations before it began.
+    /// Evaluations of all lanes together before it began.
     before: u64,
     sticking: Sticking,
     poles: Poles,
     watch: Watch<'a>,
     /// Where an event ends it.
     stop: Option<f64>,
-    /// Evaluations of the system that it alone has asked for, and what all had when it began.
+    /// Evaluations of the system that it alone has asked for.
     looked: u64,
-    looked_before: u64,
 }
 
 /// What is at work.
@@ -195,6 +194,11 @@ impl<'a> Abreast<'a> {
         })
     }
 
+    /// Evaluations of the system that all lanes have taken together.
+    fn taken_together(&self) -> u64 {
+        self.system.evaluations() - self.looked
+    }
+
     fn running(&self) -> Bits {
         let lanes = self.slots.iter().enumerate().filter(|(_, slot)| slot.is_some());
         lanes.fold(Bits(0), |mask, (lane, _)| mask.or(Bits(1 << lane)))
@@ -232,7 +236,7 @@ impl<'a> Abreast<'a> {
             }
             fresh = fresh.or(Bits(1 << lane));
             let solution = Solution::at(t0, y0);
-            let (from, before) = (t0, self.system.evaluations());
+            let (from, before) = (t0, self.taken_together());
             let sticking = Sticking::new(self.model, parameters, t0);
             let poles = Poles::new(self.model, parameters, t0, y0);
             let mut watch = Watch::new(&self.request.events, parameters);
@@ -249,7 +253,6 @@ impl<'a> Abreast<'a> {
                 watch,
                 stop: None,
                 looked: 0,
-                looked_before: self.looked,
             });
         }
         if fresh.any() {
@@ -334,14 +337,13 @@ impl<'a> Abreast<'a> {
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let finite = nothing[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
-            let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
-            let all_looked = self.looked;
+            let (cost, in_step, together) = (self.cost, self.in_step, self.taken_together());
             let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
             let Some(slot) = &mut self.slots[lane] else { continue };
             let Slot { solution, smallest, .. } = slot;
             solution.evaluations += cost.tried + taken;
             if in_step {
-                solution.evaluations = now - slot.before - (all_looked - slot.looked_before) + slot.looked;
+                solution.evaluations = together - slot.before + slot.looked;
             }
             if lost.is_some() {
                 self.end(lane, Ending::StepTooSmall, lost, ticker);

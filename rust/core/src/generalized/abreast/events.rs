@@ -80,6 +80,7 @@ impl Abreast<'_> {
         trial.at(outcome, system, state, first, between, ticker)?;
         let inside: Vec<Lanes> = between.all().0.to_vec();
         let (cost, in_step) = (*cost, *in_step);
+        let together = self.taken_together();
         let mut left = kept;
         for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
             let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
@@ -111,6 +112,7 @@ impl Abreast<'_> {
                 let spent = self.system.evaluations() - before;
                 slot.looked += spent;
                 self.looked += spent;
+                slot.solution.evaluations = together - slot.before + slot.looked;
             }
             match looked {
                 Ok(stop) => slot.stop = stop,

@@ -7,7 +7,6 @@ use crate::numerics::real::{Mask, Real};
 use crate::ode::run::Ending;
 use crate::ode::state::State;
 use crate::ode::step_control::Settled;
-use crate::ode::system::System;
 use crate::parallel::Ticker;
 
 impl Abreast<'_> {
@@ -53,14 +52,13 @@ impl Abreast<'_> {
                 dense = true;
             }
             trial.at(outcome, system, state, theta, there, ticker)?;
-            let (in_step, now, all_looked) = (self.in_step, self.system.evaluations(), self.looked);
+            let (in_step, together) = (self.in_step, self.taken_together());
             for lane in (0..WIDTH).filter(|&lane| between.lane(lane)) {
                 let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
                 let Some(slot) = &mut self.slots[lane] else { continue };
                 slot.solution.evaluations += taken;
                 if in_step {
-                    slot.solution.evaluations =
-                        now - slot.before - (all_looked - slot.looked_before) + slot.looked;
+                    slot.solution.evaluations = together - slot.before + slot.looked;
                 }
                 if lost.is_some() {
                     // As in a run alone: nothing is known beyond.
