@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Sizes
 
-__all__ = ["at_rest", "left_open", "round_off", "settled", "told_apart", "units"]
+__all__ = ["at_rest", "is_simple", "left_open", "round_off", "settled", "told_apart", "units"]
 
 _EPSILON = float(np.finfo(float).eps)
 #: Roundings of what forces are the sums of.
@@ -42,6 +42,9 @@ _WITHIN = 2.0 ** -np.arange(48.0, 6.0, -1.0)
 _SOFT = 1e-4
 _BESIDE = 1e-3
 _LEVEL = 1e-6
+#: One soft direction among others so many times as stiff, and what part its stiffness may change by along it.
+_MUCH_STIFFER = 1e6
+_STEADY = 0.1
 #: Places that are told apart less than this many times what forces leave of them are one.
 _ONE = 4.0
 
@@ -128,6 +131,17 @@ def left_open(
     reached = _WITHIN[np.logical_and.accumulate(unseen)]
     left: NDArray[np.float64] = reached.max(initial=0.0) * softest
     return left
+
+
+def is_simple(energy: Energy, places: NDArray[np.float64], units: NDArray[np.float64]) -> bool:
+    """Whether a soft direction is as stiff at all places (S, n): it is not level, but slow beside others."""
+    scaled = energy.slopes(places)[1] * units * units[:, None]
+    if not np.isfinite(scaled).all():
+        return False
+    values = np.linalg.svd(scaled, compute_uv=False)
+    soft = values[:, -1]
+    alone = bool((values[:, -2] * _MUCH_STIFFER > values[:, 0]).all())
+    return alone and bool((np.abs(soft - soft[0]) <= _STEADY * soft[0]).all() and soft[0] > 0.0)
 
 
 def told_apart(
