@@ -259,6 +259,8 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
     energy = at_rest(system, sizes)
     left = left_open(energy, place, size, unit) if n > 1 and place.any() else None
     if left is not None and not is_simple(energy, np.stack([place, place + left, place - left]), unit):
+        further = left_open(energy, place, size, unit, curved=True)
+        left = left if further is None else further
         # A zero of higher order is told by forces to some of its digits only, and so is K there.
         _, beside = matrices_along(system, np.stack([place + left, place - left]))
         off_by = np.fmax(off_by, np.abs(beside - found.stiffness).max(axis=0))

@@ -1,7 +1,7 @@
 """Equilibria of Hamiltonian systems: states at which neither coordinates nor momenta change.
 
 The one idea: where Newton's method leads the Lagrangian tells of small motions. Of what has none eigenvalues of the
-derivatives of the rates do, and where they leave H level to second order, a minimum or a maximum of any order is stable.
+derivatives of the rates do; where they leave H level to second order, a minimum or a maximum of any order is stable.
 """
 
 from __future__ import annotations
