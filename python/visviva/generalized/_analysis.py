@@ -15,7 +15,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._constrained_motions import BALANCED, Constrained
 from visviva.generalized._eigenvalues import eigenvalues
 from visviva.generalized._matrices import Sizes, matrices, matrices_along, rounding
-from visviva.generalized._multiple_zeros import at_rest, left_open, units
+from visviva.generalized._multiple_zeros import at_rest, is_simple, left_open, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -256,8 +256,11 @@ def linearization(system: Lagrangian, at: ArrayLike | None, sizes: Sizes | None 
     # Places have one size, in units of masses.
     unit = units(system, place)
     size = unit * np.abs(place / unit).max(initial=0.0)
-    left = left_open(at_rest(system, sizes), place, size, unit) if n > 1 and place.any() else None
-    if left is not None:
+    energy = at_rest(system, sizes)
+    left = left_open(energy, place, size, unit) if n > 1 and place.any() else None
+    if left is not None and not is_simple(energy, np.stack([place, place + left, place - left]), unit):
+        further = left_open(energy, place, size, unit, curved=True)
+        left = left if further is None else further
         # A zero of higher order is told by forces to some of its digits only, and so is K there.
         _, beside = matrices_along(system, np.stack([place + left, place - left]))
         off_by = np.fmax(off_by, np.abs(beside - found.stiffness).max(axis=0))

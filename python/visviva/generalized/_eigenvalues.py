@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["eigenvalues"]
+__all__ = ["are_simple", "eigenvalues"]
 
 #: Newton's steps to an eigenvalue, and how small the last of them are: to a multiple one they do not become so.
 _STEPS = 12
@@ -31,6 +31,9 @@ _OF_ROUNDING = 1.0 / 16.0
 _MOVES = 0.1
 #: Roundings of the entries of M, C and K.
 _ROUNDINGS = 4.0
+#: Singular values above this part of the largest entry are those of no vector: of a multiple eigenvalue half of the
+#: digits are left.
+_NO_VECTOR = 1e-6
 
 
 def eigenvalues(
@@ -61,6 +64,36 @@ def eigenvalues(
     led = np.where((left < _MOVES * apart).any(axis=1), found, led)
     unsure = np.array([_unsure(mass, damping, stiffness, rounding, value) for value in led])
     return np.where(np.abs(led) > unsure, led, 0.0), unsure
+
+
+def are_simple(
+    matrices: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    rounding: NDArray[np.float64],
+    values: NDArray[np.complex128],
+    unsure: NDArray[np.float64],
+) -> bool:
+    """Whether eigenvalues (V) of M, C and K that are off by so much have as many vectors as they are equal ones.
+
+    Else motions t exp(λ t) grow. Equal ones with vectors of their own, as of equal springs, do not.
+    """
+    mass, damping, stiffness = matrices
+    if len(mass) > _MOST:
+        return True
+    for value, off in zip(values, unsure, strict=True):
+        equal = int((np.abs(values - value) <= off + unsure).sum())
+        if equal == 1:
+            continue
+        at = (value * mass + damping) * value + stiffness
+        size = abs(value)
+        entries = size * (size * np.abs(mass) + np.abs(damping)) + np.abs(stiffness)
+        # In units of coordinates in which the largest entry of each is 1.
+        unit = 1.0 / np.sqrt(np.maximum(entries.max(axis=0), entries.max(axis=1)))
+        moves = (2.0 * size * np.abs(mass) + np.abs(damping)) * off + rounding
+        zero = _NO_VECTOR + np.linalg.norm(unit[:, None] * moves * unit)
+        # Of fewer vectors than eigenvalues the last that is looked at leads elsewhere.
+        if np.linalg.svd(unit[:, None] * at * unit, compute_uv=False)[-equal] > zero:
+            return False
+    return True
 
 
 def _of_matrices(

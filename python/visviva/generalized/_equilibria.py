@@ -17,7 +17,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
-from visviva.generalized._higher_orders import rises
+from visviva.generalized._level_directions import stays
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, round_off, settled
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
@@ -33,15 +33,13 @@ from visviva.generalized._searches import (
     where_something_acts,
     within,
 )
-from visviva.generalized._stability import level_and_held
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._analysis import Linearization
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["Equilibrium", "equilibria"]
+__all__ = ["Equilibrium", "equilibria", "equilibrium_at"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
@@ -132,21 +130,18 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.flo
         reached[:, ~distinguishing] = 0.0
         reached = reached[(np.abs(reached) <= most).all(axis=1)]
     results: list[Equilibrium] = []
+    size = _sizes(np.concatenate([starts, reached]))
     without_mass, without_slopes = [], []
     for place in _once(reached, starts, distinguishing):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue
         try:
-            small = linearization(system, place, sizes)
+            results.append(equilibrium_at(system, sizes, place, size))
         except InvalidInput as refusal:
             if not all(np.isfinite(part).all() for part in matrices(system, place)):
                 without_slopes.append(refusal)
             # Else Newton's method has stopped where forces are left.
-            continue
-        momentum = system.at(position=place, velocity=np.zeros(n)).momentum
-        stable = small.stable and not _leaves(system, small, sizes)
-        results.append(Equilibrium(place, stable, small.frequencies, momentum))
     if without_slopes and not results:
         raise without_slopes[0]
     if without_mass and not results:
@@ -158,13 +153,22 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.flo
     return results
 
 
+def equilibrium_at(
+    system: Lagrangian, sizes: Sizes, place: NDArray[np.float64], size: NDArray[np.float64]
+) -> Equilibrium:
+    """Give the equilibrium at a place (n) among others of a size (n), or refuse what is none."""
+    small = linearization(system, place, sizes)
+    momentum = system.at(position=place, velocity=np.zeros(len(place))).momentum
+    stable = stays(free_matrices(small), at_rest(system, sizes), place, size)
+    return Equilibrium(place, stable, small.frequencies, momentum)
+
+
 def _once(
     reached: NDArray[np.float64], starts: NDArray[np.float64], distinguishing: NDArray[np.bool_]
 ) -> list[NDArray[np.float64]]:
     """Each place (R, n) once, in order, by the coordinates that tell them apart."""
     # Sizes of coordinates: those of the places that are looked at and found.
-    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
-    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
+    size = _sizes(np.concatenate([starts, reached]))
     # What is 0 but for round-off is shown as such.
     reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
     places: list[NDArray[np.float64]] = []
@@ -172,6 +176,13 @@ def _once(
         places.append(reached[0])
         reached = reached[((np.abs(reached - reached[0]) > SAME * size) & distinguishing).any(axis=1)]
     return sorted(places, key=tuple)
+
+
+def _sizes(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sizes of coordinates (n) by places (S, n)."""
+    size: NDArray[np.float64] = np.abs(places).max(axis=0, initial=0.0)
+    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
+    return size
 
 
 def _is_one(apart: NDArray[np.float64], left: NDArray[np.float64], distinguishing: NDArray[np.bool_]) -> bool:
@@ -212,13 +223,14 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
             refused.append(refusal)
             continue
         apart.append((place, SAME * np.abs(place).max(initial=0.0) + _ONE * balance.left_open))
-        leaves, free = balance.drifts, free_matrices(small)
-        about = level_and_held(*free)
-        if about is not None and small.tangent is not None and not rolling:
-            energy = constrained.along(place, small.tangent)
-            leaves = bool((rises(energy, np.zeros(small.tangent.shape[1]), about, free[-1]) < 0.0).any())
+        free = free_matrices(small)
+        if small.tangent is not None and not rolling:
+            along = _sizes((np.abs(np.linalg.pinv(small.tangent)) @ looked_at)[None])
+            stable = stays(free, constrained.along(place, small.tangent), np.zeros_like(along), along)
+        else:
+            stable = small.stable and not balance.drifts
         momentum = constrained.free.at(position=place, velocity=np.zeros(n)).momentum
-        results.append(Equilibrium(place, small.stable and not leaves, small.frequencies, momentum))
+        results.append(Equilibrium(place, stable, small.frequencies, momentum))
     if refused and not results:
         raise refused[0]
     return results
@@ -255,14 +267,6 @@ def _reached(
         # Forces that have no value at rest, as those of dry friction, are told by name.
         linearization(system, starts[0], sizes)
     return told
-
-
-def _leaves(system: Lagrangian, small: Linearization, sizes: Sizes) -> bool:
-    """Whether the potential falls beside a place where it is level to second order, and nothing else holds."""
-    about = level_and_held(small.mass, small.damping, small.stiffness, small.rounding)
-    if about is None:
-        return False
-    return bool((rises(at_rest(system, sizes), small.position, about, small.rounding) < 0.0).any())
 
 
 def _mass_is_singular(system: Lagrangian, place: NDArray[np.float64]) -> bool:

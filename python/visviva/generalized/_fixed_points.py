@@ -1,11 +1,12 @@
 """Equilibria of Hamiltonian systems: states at which neither coordinates nor momenta change.
 
-The one idea: eigenvalues of the derivatives of the rates, where Newton's method leads, tell of small motions. Where
-they leave H level to second order, a minimum or a maximum of any order is stable.
+The one idea: where Newton's method leads the Lagrangian tells of small motions. Of what has none eigenvalues of the
+derivatives of the rates do; where they leave H level to second order, a minimum or a maximum of any order is stable.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,12 +14,13 @@ import numpy as np
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
-from visviva.generalized._equilibria import Equilibrium
+from visviva.generalized._equilibria import Equilibrium, equilibrium_at
 from visviva.generalized._hamiltonian_at_rest import at_zeros_of_forces, forces_at_rest, states_at_rest
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
-from visviva.generalized._matrices import LAST_DIGITS, balanced_units, nudges
-from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
+from visviva.generalized._level_directions import falls_farther_off
+from visviva.generalized._matrices import LAST_DIGITS, Sizes, balanced_units, nudges
+from visviva.generalized._multiple_zeros import is_simple, left_open, round_off, told_apart
 from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._probe import terms_of
@@ -40,23 +42,14 @@ if TYPE_CHECKING:
 
     from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.generalized._higher_orders import Curvatures
+    from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["FOUND", "fixed_points", "rounding_of_slopes", "slopes_at"]
 
-#: Directions between those in which H is level, how far along them it is looked at, in sizes of a state, and Newton's
-#: steps from there to the ground of a valley.
-_DIRECTIONS = 8
-_FAR_ALONG = (0.01, -0.01, 0.1, -0.1)
-_STEPS_TO_THE_GROUND = 8
-#: There slopes along it are so many times those across.
-_ON_THE_GROUND = 10.0
 #: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
 _ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
 _MADE_OF_THEM = 0.1
-#: One soft direction among others so many times as stiff, and what part its stiffness may change by along it.
-_MUCH_STIFFER = 1e6
-_STEADY = 0.1
 #: States are found to this part of their sizes.
 FOUND = SAME
 
@@ -138,7 +131,35 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
                 "spherical coordinates: these cannot describe small motions there; use others, such as x and y",
             )
         places = regular
-    return [_equilibrium(system, energy, place, scales) for place in places]
+    of = _by_velocities(system)
+    told = [_of_lagrangian(of, place, size[:n]) for place in places]
+    return [
+        _equilibrium(system, energy, place, scales) if each is None else each
+        for each, place in zip(told, places, strict=True)
+    ]
+
+
+def _by_velocities(system: Hamiltonian) -> tuple[Lagrangian, Sizes] | None:
+    """Give the Lagrangian, whose energy at rest is known without what momenta of rest add to it and take away again."""
+    try:
+        of = system.lagrangian()
+    except InvalidInput:
+        return None
+    return of, Sizes(of)
+
+
+def _of_lagrangian(
+    of: tuple[Lagrangian, Sizes] | None, state: NDArray[np.float64], size: NDArray[np.float64]
+) -> Equilibrium | None:
+    """Give the equilibrium at a state (2n) as the Lagrangian has it; nothing where that has none."""
+    if of is None:
+        return None
+    n = len(size)
+    try:
+        found = equilibrium_at(*of, state[:n], size)
+    except InvalidInput:
+        return None
+    return replace(found, momentum=state[n:])
 
 
 def _is_pole(system: Hamiltonian, state: NDArray[np.float64]) -> bool:
@@ -175,7 +196,7 @@ def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64]
     left = left_open(energy, state, size, units)
     if left is None:
         found_to = np.fmin(found_to, _left_by_rounding(energy, state, second))
-    elif _is_simple(energy, np.stack([state, state + left, state - left]), units):
+    elif is_simple(energy, np.stack([state, state + left, state - left]), units):
         left, found_to = None, LAST_DIGITS * size
     off = np.abs(_second(rounding_of_slopes(system, state, found_to, slopes)[None])[0])
     if left is not None:
@@ -222,17 +243,6 @@ def _left_by_rounding(energy: Energy, state: NDArray[np.float64], second: NDArra
     made_of = np.abs(second) @ np.abs(state) + energy.sizes(state[None])[0]
     left: NDArray[np.float64] = np.abs(inverse) @ (np.abs(energy.slopes(state[None])[0][0]) + LAST_DIGITS * made_of)
     return left
-
-
-def _is_simple(energy: Energy, states: NDArray[np.float64], units: NDArray[np.float64]) -> bool:
-    """Whether a soft direction of H is as stiff at all states (S, 2n): it is not level, but slow beside others."""
-    scaled = energy.slopes(states)[1] * units * units[:, None]
-    if not np.isfinite(scaled).all():
-        return False
-    values = np.linalg.svd(scaled, compute_uv=False)
-    soft = values[:, -1]
-    alone = bool((values[:, -2] * _MUCH_STIFFER > values[:, 0]).all())
-    return alone and bool((np.abs(soft - soft[0]) <= _STEADY * soft[0]).all() and soft[0] > 0.0)
 
 
 def _second(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -294,28 +304,5 @@ def _by_energy(
     if {-1.0, 1.0} <= known | beside:
         return False
     # Nothing that is seen is not yet nothing that is there.
-    falls = 0.0 in beside and _falls(energy, state, about, size, -1.0 if -1.0 in known | beside else 1.0)
+    falls = 0.0 in beside and falls_farther_off(energy, state, about, size, -1.0 if -1.0 in known | beside else 1.0)
     return None if falls else True
-
-
-def _falls(
-    energy: Energy, state: NDArray[np.float64], about: Curvatures, size: NDArray[np.float64], upwards: float
-) -> bool:
-    """Whether H falls along the ground of a valley, some way in a level direction, or rises along that of a hill."""
-    level = about.values == 0.0
-    along, others = about.vectors[:, level], about.vectors[:, ~level]
-    mixed = np.random.default_rng(0).normal(size=(along.shape[1], _DIRECTIONS))
-    ways = along @ np.concatenate([np.eye(along.shape[1]), mixed], axis=1)
-    ways = ways * (1.0 / np.abs(ways / size[:, None]).max(axis=0))
-    ahead = np.concatenate([part * ways.T for part in _FAR_ALONG])
-    places = state + ahead
-    with np.errstate(all="ignore"):
-        for _ in range(_STEPS_TO_THE_GROUND):
-            slopes, second = energy.slopes(places)
-            across = np.linalg.pinv(others.T @ np.where(np.isfinite(second), second, 0.0) @ others)
-            places = places - np.einsum("ai,sij,bj,sb->sa", others, across, others, slopes)
-        slopes, _ = energy.slopes(places)
-        rise = upwards * (slopes * ahead).sum(axis=1)
-        left = np.abs(slopes @ others).max(axis=1, initial=0.0) * np.abs(ahead @ about.vectors).max(axis=1)
-        falls = (rise < -_ON_THE_GROUND * left) & ~round_off(energy, places, size).all(axis=1)
-        return bool(falls.any())

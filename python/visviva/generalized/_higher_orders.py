@@ -21,6 +21,8 @@ __all__ = ["Curvatures", "Energy", "curvatures", "rises"]
 _EPSILON = float(np.finfo(float).eps)
 #: Roundings of an entry beside what it was told to be uncertain by, and of eigenvalues.
 _ROUNDINGS = 8.0
+#: Of a coordinate without a known curvature the size is so many times what others may be off by beside it.
+_UNKNOWN = 1e3
 #: Entries of a symmetric matrix differ by no more than this part of what they are divided by.
 _SYMMETRIC = 1e-12
 #: Distances that are looked at: all powers of four that numbers and their cubes have.
@@ -72,7 +74,9 @@ def curvatures(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> Cu
     # Nothing on the diagonal: as large as makes what is beside it 1.
     known = np.where(sizes > 0.0, sizes, 1.0)
     beside = (np.abs(matrix) / known).max(axis=1)
-    sizes = np.where(sizes > 0.0, sizes, np.where(rows > 0.0, beside, 1.0))
+    # Of a row that is not known at all what it may be off by is little beside the others.
+    unknown = (np.where(sizes > 0.0, rounding / known, np.sqrt(rounding))).max(axis=1, initial=0.0)
+    sizes = np.where(sizes > 0.0, sizes, np.where(rows > 0.0, beside, np.fmax(1.0, _UNKNOWN * unknown)))
     scaled = matrix / sizes / sizes[:, None]
     if np.abs(scaled - scaled.T).max() > _SYMMETRIC * max(1.0, np.abs(scaled).max()):
         return None

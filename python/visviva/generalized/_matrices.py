@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
-    from visviva.generalized._nodes import Expression
+    from visviva.generalized._nodes import Expression, Nodes
 
 __all__ = ["LAST_DIGITS", "Matrices", "Sizes", "balanced_units", "matrices", "matrices_along", "nudges", "rounding"]
 
@@ -91,7 +91,7 @@ class Sizes:
 
     @cached_property
     def _terms_of_forces(self) -> list[list[Expression]]:
-        return [terms_of(self._calculus, force) for force in self._forces]
+        return [_collected(terms_of(self._calculus, force)) for force in self._forces]
 
     @cached_property
     def _terms_of_stiffnesses(self) -> list[list[Expression]]:
@@ -99,7 +99,7 @@ class Sizes:
         found = []
         for force in self._forces:
             rows = c.with_derivatives(force)
-            found += [terms_of(c, [row[1 + j] for row in rows]) for j in range(n)]
+            found += [_collected(terms_of(c, [row[1 + j] for row in rows])) for j in range(n)]
         return found
 
     def forces(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -127,6 +127,37 @@ class Sizes:
         values = np.where(np.isfinite(values), values, 0.0)
         parts = np.split(values, np.cumsum([len(terms) for terms in several])[:-1], axis=1)
         return np.stack([part.sum(axis=1) for part in parts], axis=1)
+
+
+def _collected(terms: list[Expression]) -> list[Expression]:
+    """Terms with numbers before them that are alike as one: what momenta of rest add takes itself away exactly."""
+    alike: dict[tuple[int, ...], list[tuple[float, Expression]]] = {}
+    for term in terms:
+        number, factors = _factors(term._nodes, term._place)
+        alike.setdefault(tuple(sorted(factors)), []).append((number, term))
+    found = []
+    for group in alike.values():
+        numbers, (first, *others) = [number for number, _ in group], [term for _, term in group]
+        total = sum(numbers)
+        if not others:
+            found.append(first)
+        elif abs(total) > len(numbers) * _EPSILON * sum(map(abs, numbers)):
+            found.append(first * (total / numbers[0]))
+    return found
+
+
+def _factors(nodes: Nodes, place: int) -> tuple[float, list[int]]:
+    """Give the number before a product, and what else it is the product of."""
+    operation, arguments, value = nodes.all[place]
+    if operation == "constant":
+        return value, []
+    if operation != "product" and not (operation == "sum" and len(arguments) == 1):
+        return 1.0, [place]
+    number, factors = 1.0, list[int]()
+    for each in arguments:
+        before, others = _factors(nodes, each)
+        number, factors = number * before, factors + others
+    return number, factors
 
 
 def balanced_units(matrices: NDArray[np.float64]) -> NDArray[np.float64]:

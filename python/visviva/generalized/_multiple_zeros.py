@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Sizes
 
-__all__ = ["at_rest", "left_open", "round_off", "settled", "told_apart", "units"]
+__all__ = ["at_rest", "is_simple", "left_open", "round_off", "settled", "told_apart", "units"]
 
 _EPSILON = float(np.finfo(float).eps)
 #: Roundings of what forces are the sums of.
@@ -38,10 +38,16 @@ _STEPS = 4
 _NEAR = 1e-2
 #: Distances within which forces may be round-off, as parts of the places that are looked at.
 _WITHIN = 2.0 ** -np.arange(48.0, 6.0, -1.0)
+#: Of these every so many are looked at along a curve, and Newton's steps that lead to it.
+_EVERY = 3
+_STEPS_TO_THE_GROUND = 3
 #: Stiffnesses that are this part of those so far beside them may be of a higher order; singular values, of others.
 _SOFT = 1e-4
 _BESIDE = 1e-3
 _LEVEL = 1e-6
+#: One soft direction among others so many times as stiff, and what part its stiffness may change by along it.
+_MUCH_STIFFER = 1e6
+_STEADY = 0.1
 #: Places that are told apart less than this many times what forces leave of them are one.
 _ONE = 4.0
 
@@ -106,10 +112,16 @@ def round_off(energy: Energy, places: NDArray[np.float64], size: NDArray[np.floa
 
 
 def left_open(
-    energy: Energy, place: NDArray[np.float64], size: NDArray[np.float64], unit: NDArray[np.float64]
+    energy: Energy,
+    place: NDArray[np.float64],
+    size: NDArray[np.float64],
+    unit: NDArray[np.float64],
+    *,
+    curved: bool = False,
 ) -> NDArray[np.float64] | None:
     """How far a place (n) may be moved along a nearly level direction until slopes are seen; nothing without one.
 
+    ``curved``, along the ground of a valley, too, if they are seen on it farther off: else it is one of equilibria.
     `unit` has units of coordinates in which second derivatives are compared.
     """
     second = energy.slopes(place[None])[1][0]
@@ -127,7 +139,46 @@ def left_open(
     # As far as all distances below are unseen, too: places are not joined over a hill.
     reached = _WITHIN[np.logical_and.accumulate(unseen)]
     left: NDArray[np.float64] = reached.max(initial=0.0) * softest
-    return left
+    if not curved or len(reached) == len(_WITHIN):
+        return left
+    along = _along_the_ground(energy, place, size, (softest, (vectors[:-1] * unit).T))
+    return np.where(along > np.abs(left), np.copysign(along, softest), left)
+
+
+def _along_the_ground(
+    energy: Energy,
+    place: NDArray[np.float64],
+    size: NDArray[np.float64],
+    directions: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """How far each coordinate (n) goes on the ground of a valley until slopes are seen; 0 if they never are.
+
+    From places along a direction (n) others (n, n − 1) lead to the ground.
+    """
+    softest, others = directions
+    parts = np.append(_WITHIN[::_EVERY], _WITHIN[-1])
+    places = place + np.concatenate([parts, -parts])[:, None] * softest
+    with np.errstate(all="ignore"):
+        for _ in range(_STEPS_TO_THE_GROUND):
+            slopes, second = energy.slopes(places)
+            across = others.T @ np.where(np.isfinite(second), second, 0.0) @ others
+            places = places - np.einsum("ai,sij,bj,sb->sa", others, np.linalg.pinv(across), others, slopes)
+        unseen = round_off(energy, places, size).all(axis=1).reshape(2, -1).all(axis=0)
+        reached = int(np.logical_and.accumulate(unseen).sum())
+        moved = np.abs(places - place).reshape(2, len(parts), -1).max(axis=0)
+    ends = 0 < reached < len(parts)
+    return moved[reached - 1] if ends else np.zeros(len(place))
+
+
+def is_simple(energy: Energy, places: NDArray[np.float64], units: NDArray[np.float64]) -> bool:
+    """Whether a soft direction is as stiff at all places (S, n): it is not level, but slow beside others."""
+    scaled = energy.slopes(places)[1] * units * units[:, None]
+    if not np.isfinite(scaled).all():
+        return False
+    values = np.linalg.svd(scaled, compute_uv=False)
+    soft = values[:, -1]
+    alone = bool((values[:, -2] * _MUCH_STIFFER > values[:, 0]).all())
+    return alone and bool((np.abs(soft - soft[0]) <= _STEADY * soft[0]).all() and soft[0] > 0.0)
 
 
 def told_apart(
@@ -138,19 +189,28 @@ def told_apart(
 ) -> list[NDArray[np.float64]]:
     """Give one of places that slopes cannot tell apart, with zeros where these may be."""
     found: list[NDArray[np.float64]] = []
+    within: list[NDArray[np.float64]] = []
+    least = _ROUNDINGS * _EPSILON * size
     for place in places:
-        apart, least = np.abs(np.array(found).reshape(-1, len(place)) - place), _ROUNDINGS * _EPSILON * size
-        if (apart <= least).all(axis=1).any():
+        apart = np.abs(np.array(found).reshape(-1, len(place)) - place)
+        if (apart <= np.array(within).reshape(apart.shape)).all(axis=1).any():
             continue
-        left = left_open(energy, place, size, unit(place))
+        left = left_open(energy, place, size, unit(place), curved=True)
         if left is None:
             found.append(place)
+            within.append(least)
             continue
         left = least + _ONE * np.abs(left)
-        if (apart <= left).all(axis=1).any():
-            continue
+        near = (apart <= left).all(axis=1)
         snapped = np.where(np.abs(place) <= left, 0.0, place)
-        found.append(snapped if round_off(energy, snapped[None], size).all() else place)
+        zeros = (snapped != place).any() and not any((each == snapped).all() for each in found)
+        if zeros and round_off(energy, snapped[None], size).all():
+            # Told for those near it, at which Newton's method may have come to an end beside it.
+            kept = np.flatnonzero(~near)
+            found, within = [*(found[k] for k in kept), snapped], [*(within[k] for k in kept), left]
+        elif not near.any():
+            found.append(place)
+            within.append(left)
     return found
 
 

@@ -147,7 +147,11 @@ def steps_to_zeros(forces: NDArray[np.float64], stiffness: NDArray[np.float64]) 
     rows = np.abs(stiffness).max(axis=2)
     judged = np.isfinite(forces).all(axis=1) & np.isfinite(stiffness).all(axis=(1, 2)) & (rows > 0.0).all(axis=1)
     steps = np.full(forces.shape, np.nan)
-    steps[judged] = _solved(stiffness[judged] / rows[judged][..., None], forces[judged] / rows[judged])
+    scaled = stiffness[judged] / rows[judged][..., None]
+    # Of the ground of a curved valley far off one coordinate is much larger than another, and it is not level for that.
+    columns = np.abs(scaled).max(axis=1)
+    columns[columns == 0.0] = 1.0
+    steps[judged] = _solved(scaled / columns[:, None], forces[judged] / rows[judged]) / columns
     return steps
 
 

@@ -1,9 +1,9 @@
 """Whether small motions M ξ̈ + C ξ̇ + K ξ = 0 stay small, told also where they are fast and slow at once.
 
-The one idea: with M positive definite and C that takes energy or none, motions stay small where K has no negative
-eigenvalue (W. Thomson & P. G. Tait), and how many it has is known to the digits of each of its entries: rows and
-columns are divided by the roots of the diagonal first (J. J. Sylvester's law of inertia), so no stiff spring hides a
-soft one. What is not coupled is judged alone.
+The one idea: with M positive definite and C that takes energy or none, gyroscopic or not, motions stay small where K
+has no negative eigenvalue, and grow where it has an odd number of them (W. Thomson & P. G. Tait, N. G. Chetaev). How
+many it has is known to the digits of each of its entries: rows and columns are divided by the roots of the diagonal
+first (J. J. Sylvester's law of inertia), so no stiff spring hides a soft one. What is not coupled is judged alone.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva.generalized._eigenvalues import eigenvalues
+from visviva.generalized._eigenvalues import are_simple, eigenvalues
 from visviva.generalized._higher_orders import curvatures
 from visviva.generalized._matrices import balanced_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from visviva.generalized._higher_orders import Curvatures
-
-__all__ = ["is_stable", "level_and_held"]
+__all__ = ["has_energy_of_rest", "is_stable"]
 
 #: Eigenvalues whose real part is below so many times what they may be off are on the imaginary axis.
 _UNSURE = 16.0
 #: Singular values below this part of the largest are zero.
 _LEVEL = 1e-12
+#: Roundings of C, of which gyroscopic terms leave no more where they take each other away.
+_ROUNDINGS = 8.0
 #: The cosine of directions that are at a right angle but for round-off.
 _APART = 1e-7
 
@@ -59,13 +59,18 @@ def _block(
     stiffness: NDArray[np.float64],
     rounding: NDArray[np.float64],
 ) -> bool:
-    lowest = [_lowest(mass, np.zeros_like(mass)), _lowest(damping, np.zeros_like(mass)), _lowest(stiffness, rounding)]
-    of_mass, of_damping, of_stiffness = lowest
-    if of_mass is not None and of_damping is not None and of_stiffness is not None and of_mass > 0.0 <= of_damping:
-        return of_stiffness >= 0.0
+    about = curvatures(stiffness, rounding) if has_energy_of_rest(mass, damping) else None
+    if about is not None:
+        negative = int((about.values < 0.0).sum())
+        # Of an odd number the determinant of λ²M + λC + K changes its sign on the way from 0 to large λ.
+        if negative == 0 or (negative % 2 and about.values.all()) or (damping == damping.T).all():
+            return negative == 0
     values, unsure = eigenvalues(mass, damping, stiffness, rounding)
     grows = (values.real > _UNSURE * unsure).any()
-    return not grows and not _is_pushed(np.linalg.solve(mass, stiffness).astype(np.float64))
+    if grows or _is_pushed(np.linalg.solve(mass, stiffness).astype(np.float64)):
+        return False
+    on_the_axis = (np.abs(values.real) <= _UNSURE * unsure) & (values.imag > _UNSURE * unsure)
+    return are_simple((mass, damping, stiffness), rounding, values[on_the_axis], _UNSURE * unsure[on_the_axis])
 
 
 def _is_pushed(stiffness: NDArray[np.float64]) -> bool:
@@ -83,22 +88,12 @@ def _is_pushed(stiffness: NDArray[np.float64]) -> bool:
     return bool(along[-1] <= _APART)
 
 
-def _lowest(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> float | None:
-    """Give an eigenvalue of the sign of the lowest one, 0 where that is round-off; nothing if it is not symmetric."""
-    found = curvatures(matrix, rounding)
-    return None if found is None else float(found.values.min())
-
-
-def level_and_held(
-    mass: NDArray[np.float64],
-    damping: NDArray[np.float64],
-    stiffness: NDArray[np.float64],
-    rounding: NDArray[np.float64],
-) -> Curvatures | None:
-    """Give the curvatures of K, if it is level, and nothing turns: M is positive, and no terms are gyroscopic."""
+def has_energy_of_rest(mass: NDArray[np.float64], damping: NDArray[np.float64]) -> bool:
+    """Whether motions have an energy, least at rest, that C leaves or takes: gyroscopic terms do no work."""
     zero = np.zeros_like(mass)
-    of_mass, of_damping = _lowest(mass, zero), _lowest(damping, zero)
-    if of_mass is None or of_damping is None or not of_mass > 0.0 <= of_damping:
-        return None
-    found = curvatures(np.where(np.abs(stiffness) > rounding, stiffness, 0.0), rounding)
-    return found if found is not None and found.values.min() == 0.0 else None
+    works = damping / 2.0 + damping.T / 2.0
+    works = np.where(np.abs(works) > _ROUNDINGS * np.finfo(float).eps * np.abs(damping), works, 0.0)
+    of_mass, of_damping = curvatures(mass, zero), curvatures(works, zero)
+    if of_mass is None or of_damping is None:
+        return False
+    return bool(of_mass.values.min() > 0.0 <= of_damping.values.min())
