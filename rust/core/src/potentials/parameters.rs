@@ -249,7 +249,7 @@ impl Value {
 
     /// In units larger by 2 to the power of `exponent`.
     fn divided(&self, exponent: f64, units: Units) -> Self {
-        let divide = |value: f64| divided(value, exponent);
+        let divide = dividing(exponent);
         match self {
             Self::Number(value) => Self::Number(divide(*value)),
             Self::Numbers(values) => Self::Numbers(values.iter().copied().map(divide).collect()),
@@ -261,12 +261,13 @@ impl Value {
     }
 }
 
-/// `value / 2^exponent`: exact for a whole exponent, else rounded.
-fn divided(value: f64, exponent: f64) -> f64 {
-    let whole = exponent.floor();
-    let rest = exponent - whole;
-    let value = scale(value, -(whole.clamp(-4400.0, 4400.0) as i32));
-    if rest == 0.0 { value } else { value * Exponential::exp(-rest * core::f64::consts::LN_2) }
+/// Divides by 2 to the power of `exponent`: exact for a whole exponent, else rounded.
+fn dividing(exponent: f64) -> impl Fn(f64) -> f64 {
+    let floor = exponent.floor();
+    let rest = exponent - floor;
+    let whole = -(floor.clamp(-4400.0, 4400.0) as i32);
+    let part = if rest == 0.0 { 1.0 } else { Exponential::exp(-rest * core::f64::consts::LN_2) };
+    move |value| scale(value, whole) * part
 }
 
 /// What a potential or a force declares about itself.

@@ -24,15 +24,14 @@ impl<const N: usize> Piecewise<N> {
     }
     /// The same in units of length and of its values that are larger by these powers of two.
     pub(crate) fn scaled(&self, length: i32, value: i32) -> Self {
-        let [shorter, longer, less] = [-length, length, -value].map(by_power_of_two);
-        let starts = self.rows.starts().iter().map(|start| shorter(*start)).collect();
+        let starts = self.rows.starts().iter().map(|start| scale(*start, -length)).collect();
         let of_row = |row: &[f64; N]| {
             let mut row = *row;
-            (row[0], row[1]) = (shorter(row[0]), longer(row[1]));
-            row[COLUMNS..].iter_mut().for_each(|coefficient| *coefficient = less(*coefficient));
+            (row[0], row[1]) = (scale(row[0], -length), scale(row[1], length));
+            row[COLUMNS..].iter_mut().for_each(|coefficient| *coefficient = scale(*coefficient, -value));
             row
         };
-        Self::new(starts, shorter(self.last), self.rows.rows().iter().map(of_row).collect())
+        Self::new(starts, scale(self.last, -length), self.rows.rows().iter().map(of_row).collect())
     }
     /// The range.
     pub(crate) fn domain(&self) -> (f64, f64) {
@@ -73,10 +72,4 @@ impl<const N: usize> Piecewise<N> {
         let (after, before) = (S::splat(self.first).less_equal(r), r.less_equal(S::splat(self.last)));
         S::select(after, S::select(before, sum, S::splat(f64::NAN)), S::splat(f64::NAN))
     }
-}
-
-/// Multiplies by a power of two, by one product where that is a normal number.
-fn by_power_of_two(exponent: i32) -> impl Fn(f64) -> f64 {
-    let factor = scale(1.0, exponent);
-    move |x| if factor.is_normal() { x * factor } else { scale(x, exponent) }
 }
