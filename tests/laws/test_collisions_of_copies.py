@@ -99,3 +99,23 @@ def test_looking_for_contacts_changes_nothing_where_there_are_none() -> None:
     assert len(run.collisions.t) == 0
     assert (run.status == vv.Status.OK).all()
     np.testing.assert_array_equal(run.position, ensemble.run(t=1.0, method="leapfrog", dt=0.01).position)
+
+
+@pytest.mark.parametrize("first", ["free", "bound"])
+def test_copies_in_which_nothing_acts_meet_as_alone(first: str) -> None:
+    """They fly straight, in closed form: beside others under forces their contacts were not seen, with status OK."""
+    bodies = vv.Particles([1.0, 1e-3], [[0, 0, 0], [1.0, 0, 0]], [[0, 0, 0], [-1.0, 0, 0]], radius=[0.1, 0.1])
+    scene = vv.Scene(bodies, vv.Gravity(1.0))
+    free, bound = [0.0, 0.0], [1.0, 1e-3]
+    masses = [free, bound, bound] if first == "free" else [bound, free, bound]
+    for ensemble in (
+        scene.ensemble(mass=masses),
+        scene.ensemble(parameters={"Gravity": {"G": [sum(mass) for mass in masses]}}),
+    ):
+        run = ensemble.run(t=2.0, collisions="stop")
+        assert (run.status == vv.Status.STOPPED).all()
+        for copy, mass in enumerate(masses):
+            assert run[copy].collisions.t.tolist() == ensemble[copy].run(t=2.0, collisions="stop").collisions.t.tolist()
+            if mass == free:
+                # The distance is 1 − t, to the sum of the radii.
+                assert run[copy].collisions.t == pytest.approx([0.8], rel=1e-15, abs=0)

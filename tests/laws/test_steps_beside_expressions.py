@@ -11,12 +11,10 @@ import visviva as vv
 
 BODY = vv.Particles([1.0], [[1.0, 0.2, 0.1]], [[0.0, 0.5, 0.1]])
 
-#: What tells of itself from afar: a step sees it, or sees that there is nothing.
+#: Polynomials of low degree and standing waves: as long as a step sees them to be.
 PLAIN = {
     "line": lambda r, v, t: 0.1 * r[0],
     "quartic": lambda r, v, t: r[0] ** 4 + r[1] ** 2 * r[2] ** 2,
-    "point": lambda r, v, t: -1.0 / (r[0] ** 2 + r[1] ** 2 + r[2] ** 2) ** 0.5,
-    "logarithm": lambda r, v, t: 0.5 * np.log(1.0 + r[0] ** 2 + 2.0 * r[1] ** 2),
     "waves": lambda r, v, t: np.sin(3.0 * r[0]) * np.cos(r[1]),
     "slow change": lambda r, v, t: (1.0 + t**2) * r[0] ** 2,
 }
@@ -27,8 +25,12 @@ NARROW = {
     "corner": lambda r, v, t: abs(r[0]),
     "flat bottom": lambda r, v, t: (abs(r[0]) - r[0]) ** 3,
     "drive": lambda r, v, t: r[0] * np.cos(t),
+    "running wave": lambda r, v, t: np.cos(r[0] - t),
     "steep pulse": lambda r, v, t: r[0] / (1.0 + t**8),
+    "gentle pulse": lambda r, v, t: r[0] / (1.0 + t**2),
     "crests": lambda r, v, t: np.cos(r[0]) ** 40,
+    "point": lambda r, v, t: -1.0 / (r[0] ** 2 + r[1] ** 2 + r[2] ** 2) ** 0.5,
+    "logarithm": lambda r, v, t: 0.5 * np.log(1.0 + r[0] ** 2 + 2.0 * r[1] ** 2),
 }
 
 
@@ -66,3 +68,24 @@ def test_a_smooth_force_does_not_multiply_the_steps_of_gravity() -> None:
     # v (1 − 1e-4) but for the square of that; places change by less, and so do the pulls.
     change = (beside_it.velocity - without.velocity)[-1]
     np.testing.assert_allclose(change, -1e-4 * without.velocity[-1], rtol=0, atol=5e-8)
+
+
+def switched(u: Any, width: float = 1e-6) -> Any:
+    return 0.5 * (1.0 + u / np.sqrt(u * u + width * width))
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "dop853"}, {"rtol": 1e-9}])
+@pytest.mark.parametrize("on", ["time", "place"])
+def test_switches_of_roots_are_felt(on: str, how: dict[str, Any]) -> None:
+    """Both sides fall off as nothing one unit away: thrust for one unit of 20, which longer steps went over."""
+
+    def thrust(r: Any, v: Any, t: Any) -> Any:
+        u = t if on == "time" else r[0]
+        return switched(u - 13.0) - switched(u - 14.0), 0.0 * t, 0.0 * t
+
+    start = vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
+    out = vv.Scene(start, vv.ExpressionForce(acceleration=thrust)).run(t=20.0, **how)
+    # Speeds 1, then 1 + (t − 13), then 2 for six units; in space v² grows by 2 over one unit of length.
+    fast = np.sqrt(3.0)
+    expected = 13.0 + 1.5 + 2.0 * 6.0 if on == "time" else 14.0 + fast * (7.0 - (fast - 1.0))
+    assert out.position[-1, 0, 0] == pytest.approx(expected, rel=0, abs=1e-5)

@@ -73,7 +73,7 @@ impl Bodies {
             let shape = Shape { rows: count, components: self.components };
             let q: Vec<f64> = (0..shape.len()).map(|k| self.position[k % count][k / count]).collect();
             let mut a = vec![start; shape.len()];
-            let mut force = FewBodies::<f64>::new(shape, 1, self.strength.clone(), self.softening);
+            let mut force = FewBodies::<f64>::new(shape, self.strength.clone(), vec![self.softening]);
             apply(&mut force, &q, &mut a, before.is_none());
             return (0..count).map(|i| self.vector(|c| a[c * count + i])).collect();
         }
@@ -231,7 +231,12 @@ fn eight_trajectories_at_once_have_the_bits_of_each_alone() {
                 (0..shape.len()).map(|k| gather(&|case| case.position[k % count][k / count])).collect();
             let strength = (0..active).map(|i| gather(&|case| case.strength[i])).collect();
             let mut a = vec![Lanes::zero(); shape.len()];
-            apply(&mut FewBodies::<Lanes>::new(shape, 1, strength, softening), &q, &mut a, true);
+            apply(
+                &mut FewBodies::<Lanes>::new(shape, strength, vec![Lanes::splat(softening)]),
+                &q,
+                &mut a,
+                true,
+            );
             for (lane, case) in lanes.iter().enumerate() {
                 let found: Vec<_> = (0..count).map(|i| case.vector(|c| a[c * count + i].0[lane])).collect();
                 assert_eq!(bits(&found), bits(&case.accelerations(Kernel::Few, None)));

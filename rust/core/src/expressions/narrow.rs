@@ -1,13 +1,13 @@
-//! Which functions among expressions may be too narrow for the steps of a method, and hide between the places where it looks.
+//! Which expressions may be too narrow for the steps of a method, and hide between the places where it looks.
 //!
-//! The one idea: what is algebraic, and no steeper than an inverse square along a line, tells of itself from afar; exp and what is
-//! written with it may be nothing at two neighboring places and all that matters in between.
+//! The one idea: exp and what is written with it may be nothing at two neighboring places and all that matters in between; what is
+//! algebraic tells of itself from afar if it stands alone, but the two sides of a switch, u/√(u² + ε²), take each other away.
+//! Polynomials of low degree, and waves that stand in space, are as long as they are seen to be.
 
 use super::function::Function;
 use super::graph::{Dependence, Graph, Id, Node};
 
-/// Powers of places and times up to this tell of themselves from afar: those in the pull of a point, x (x² + y² + z²)^−3/2. A
-/// hundred widths away a pulse that falls off by a higher power is less than what a step leaves out.
+/// Polynomials of places, velocities and times up to this degree have no narrow crests.
 const STEEPEST: f64 = 4.0;
 
 /// The calls of functions like exp among these expressions, with their arguments, where those change on the way; and those of
@@ -28,29 +28,17 @@ pub fn calls(graph: &Graph, roots: &[Id]) -> Vec<(Function, Id, Id)> {
     graph.reachable(roots).into_iter().filter_map(may_be_narrow).collect()
 }
 
-/// Whether nothing in these expressions hides from a step: no functions like exp, no steep powers, and nothing that is smooth on
-/// either side of where it bends at once, as |x| and atan2.
-pub fn all_tell_from_afar(graph: &Graph, roots: &[Id]) -> bool {
-    let changes = |id: Id| graph.dependence(id) > Dependence::Parameters;
-    let is_square = |id: Id| matches!(graph.node(id), Node::Product(a, b) if a == b);
-    let bends = |id: Id| match *graph.node(id) {
-        Node::Angle(..) => changes(id),
-        Node::Call(Function::Sqrt, argument) | Node::Power(argument, _) => {
-            changes(argument) && is_square(argument)
-        }
-        _ => false,
-    };
-    let reached = graph.reachable(roots);
-    calls(graph, roots).is_empty()
-        && !reached.iter().copied().any(bends)
-        && degrees(graph).iter().enumerate().all(|(id, &degree)| {
-            // Every node is there before those that are made of it, and `reached` ascends.
-            degree <= STEEPEST || reached.binary_search(&(id as Id)).is_err()
-        })
+/// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree and waves that stand in
+/// space.
+pub fn may_hide(graph: &Graph, roots: &[Id]) -> bool {
+    let degrees = degrees(graph);
+    graph.reachable(roots).into_iter().any(|id| degrees[id as usize] > STEEPEST)
 }
 
-/// The powers of places and times in every node, of quotients those above and below together.
+/// The degree of every node in places, velocities and times; infinite of what is no polynomial of them and of their waves.
 fn degrees(graph: &Graph) -> Vec<f64> {
+    let changes = |id: Id| graph.dependence(id) > Dependence::Parameters;
+    let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
     let mut degrees: Vec<f64> = Vec::with_capacity(graph.nodes().len());
     for node in graph.nodes() {
         let of = |id: Id| degrees[id as usize];
@@ -58,10 +46,12 @@ fn degrees(graph: &Graph) -> Vec<f64> {
             Node::Constant(_) | Node::Parameter(_) => 0.0,
             Node::Variable(_) | Node::Time => 1.0,
             Node::Sum(_, terms) => terms.iter().map(|&(_, id)| of(id)).fold(0.0, f64::max),
-            Node::Product(a, b) | Node::Quotient(a, b) | Node::Angle(a, b) => of(*a) + of(*b),
-            Node::Call(Function::Sqrt, argument) => 0.5 * of(*argument),
-            Node::Call(_, argument) => of(*argument),
-            Node::Power(argument, power) => of(*argument) * f64::from_bits(*power).abs(),
+            Node::Product(a, b) => of(*a) + of(*b),
+            Node::Quotient(a, b) if !changes(*b) => of(*a),
+            Node::Call(Function::Sin | Function::Cos, argument) if !of_time(*argument) => of(*argument),
+            Node::Call(_, argument) | Node::Power(argument, _) if !changes(*argument) => 0.0,
+            Node::Angle(a, b) if !changes(*a) && !changes(*b) => 0.0,
+            Node::Quotient(..) | Node::Angle(..) | Node::Call(..) | Node::Power(..) => f64::INFINITY,
         };
         degrees.push(degree);
     }
@@ -73,37 +63,48 @@ mod tests {
     use super::*;
 
     /// A graph of x, y and the time, and an expression in it.
-    fn told(make: impl Fn(&mut Graph, Id, Id) -> Id) -> bool {
+    fn hides(make: impl Fn(&mut Graph, Id, Id) -> Id) -> bool {
         let mut graph = Graph::default();
         let (x, t) = (graph.variable(0), graph.time());
         let root = make(&mut graph, x, t);
-        all_tell_from_afar(&graph, &[root])
+        may_hide(&graph, &[root])
     }
 
     #[test]
-    fn what_is_algebraic_and_gentle_tells_of_itself() {
-        assert!(told(|graph, x, t| graph.product(&[x, t])));
-        assert!(told(|graph, x, _| graph.call(Function::Sin, x)));
-        assert!(told(|graph, x, _| {
-            let square = graph.power(x, 2.0);
-            let sum = graph.sum(1.0, &[(1.0, square)]);
-            graph.power(sum, -1.5)
+    fn polynomials_and_standing_waves_do_not() {
+        assert!(!hides(|graph, x, t| graph.product(&[x, x, t])));
+        assert!(!hides(|graph, x, _| graph.power(x, 4.0)));
+        assert!(!hides(|graph, x, _| graph.call(Function::Sin, x)));
+        // What does not change is a number.
+        assert!(!hides(|graph, x, _| {
+            let parameter = graph.parameter(0);
+            let number = graph.call(Function::Exp, parameter);
+            graph.product(&[number, x])
         }));
     }
 
     #[test]
-    fn what_may_be_nothing_beside_a_stage_does_not() {
-        for function in [Function::Exp, Function::Tanh, Function::SechSquared, Function::Cosh, Function::Sinh]
-        {
-            assert!(!told(|graph, x, _| graph.call(function, x)));
+    fn what_may_be_nothing_beside_a_stage_does() {
+        for function in [Function::Exp, Function::Tanh, Function::Sqrt, Function::Atan, Function::Ln] {
+            assert!(hides(|graph, x, _| graph.call(function, x)));
         }
-        // Drives, corners and steep powers.
-        assert!(!told(|graph, _, t| graph.call(Function::Cos, t)));
-        assert!(!told(|graph, x, _| {
+        // Drives and running waves, corners and switches, steep powers.
+        assert!(hides(|graph, _, t| graph.call(Function::Cos, t)));
+        assert!(hides(|graph, x, t| {
+            let phase = graph.sum(0.0, &[(1.0, x), (-1.0, t)]);
+            graph.call(Function::Cos, phase)
+        }));
+        assert!(hides(|graph, x, _| {
             let square = graph.power(x, 2.0);
             graph.power(square, 0.5)
         }));
-        assert!(!told(|graph, x, _| graph.power(x, -6.0)));
+        assert!(hides(|graph, _, t| {
+            let square = graph.power(t, 2.0);
+            let sum = graph.sum(1e-12, &[(1.0, square)]);
+            let root = graph.power(sum, -0.5);
+            graph.product(&[t, root])
+        }));
+        assert!(hides(|graph, x, _| graph.power(x, 6.0)));
     }
 
     #[test]
@@ -111,11 +112,6 @@ mod tests {
         let mut graph = Graph::default();
         let x = graph.variable(0);
         let _ = graph.call(Function::Exp, x);
-        assert!(all_tell_from_afar(&graph, &[x]));
-        // A function of parameters alone is a number.
-        let parameter = graph.parameter(0);
-        let number = graph.call(Function::Exp, parameter);
-        let product = graph.product(&[number, x]);
-        assert!(all_tell_from_afar(&graph, &[product]));
+        assert!(!may_hide(&graph, &[x]));
     }
 }

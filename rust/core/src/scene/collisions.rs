@@ -132,9 +132,9 @@ fn may_touch(scene: &Scene, copy: usize) -> bool {
     scene.particles > 1 && scene.radii(copy).iter().any(|&radius| radius > 0.0)
 }
 
-/// Whether bodies of one copy fly straight from one contact to the next, the times of which are known then.
-fn flies(scene: &Scene, request: &Request) -> bool {
-    request.method == "auto" && member(scene, 0).forces.is_empty()
+/// Whether the bodies of a copy fly straight from one contact to the next, the times of which are known then.
+fn flies(scene: &Scene, copy: usize, request: &Request) -> bool {
+    request.method == "auto" && member(scene, copy).forces.is_empty()
 }
 
 /// What collisions are asked for and may happen.

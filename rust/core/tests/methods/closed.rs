@@ -133,7 +133,7 @@ fn lanes_have_the_bits_of_single_trajectories_and_none_disturbs_another() {
     let strength = (0..shape.rows)
         .map(|row| Lanes(core::array::from_fn(|lane| mass(row / bodies, lane, row % bodies))))
         .collect();
-    let mut dynamics = Dynamics::closed(FewBodies::new(shape, strength, vec![Lanes::zero(); count]));
+    let mut dynamics = Dynamics::closed(FewBodies::new(shape, strength, vec![Lanes([0.0; WIDTH]); count]));
     let mut state = State::new(&numbers(0), &numbers(1));
     advance(METHOD, STEP, 40, &mut state, &mut dynamics);
     for (system, lane) in (0..count).flat_map(|system| (0..WIDTH).map(move |lane| (system, lane))) {

@@ -58,7 +58,7 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         potential: if potential { Some(compiled(&roots)?) } else { None },
         parameters: parameters.to_vec(),
         needs,
-        may_hide: !narrow::all_tell_from_afar(&graph, &force),
+        may_hide: narrow::may_hide(&graph, &force),
         made_from: vec![],
     })
 }

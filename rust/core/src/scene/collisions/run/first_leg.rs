@@ -71,8 +71,8 @@ impl Leg {
     }
 }
 
-/// Runs all copies to their first contacts; `None` where they have to be looked at one by one: where spheres touch at the start or
-/// are parts of others, or a function is asked on the way.
+/// Runs all copies to their first contacts; `None` where they have to be looked at one by one: where some of them fly, their spheres
+/// touch at the start or are parts of others, or a function is asked on the way.
 ///
 /// # Errors
 /// Those of the run.
@@ -83,12 +83,13 @@ pub(super) fn first_leg(
     ticker: &mut Ticker<'_>,
 ) -> Result<Option<Output>> {
     let calls = |event: &Event| matches!(event.what, What::Function(_));
-    if scene.copies == 1 || flies(scene, request) || request.events.iter().any(calls) {
+    if scene.copies == 1 || request.events.iter().any(calls) {
         return Ok(None);
     }
     let meets_nobody_yet = |copy: usize| {
         let bodies = bodies_of(scene, copy, rule, direction);
         may_touch(scene, copy)
+            && !flies(scene, copy, request)
             && !Remaining::of(&bodies.host).some_have_gone()
             && bodies.touching().is_empty()
     };

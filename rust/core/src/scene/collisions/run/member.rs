@@ -166,7 +166,7 @@ impl Member {
         }
         let leg = Remaining::of(&self.bodies.host);
         let mut scene = leg.scene(whole, self.copy, &self.bodies, self.time())?;
-        if touching.is_some() && request.events.is_empty() && flies(&scene, request) {
+        if touching.is_some() && request.events.is_empty() && flies(&scene, 0, request) {
             return self.fly(whole, request, ticker);
         }
         if self.lines.is_empty() && self.outcome.rows == 0 {

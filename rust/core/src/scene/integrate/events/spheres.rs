@@ -11,9 +11,6 @@ use crate::numerics::real::Mask;
 use crate::ode::state::State;
 use crate::tiered;
 
-/// Of more bodies a sweep along their boxes, step by step, takes less time than all pairs.
-const MOST: usize = 12;
-
 /// A number at nine nodes.
 type AtNodes = [f64; WIDTH + 1];
 
@@ -28,12 +25,11 @@ pub(super) struct Spheres {
 impl Spheres {
     /// Of these spheres and points, whose radii are in such a unit, if they are few.
     pub(super) fn of(contacts: &Contacts, unit_of_length: f64) -> Option<Self> {
-        let count = contacts.count();
-        if count > MOST {
-            return None;
-        }
+        let count = contacts.few()?;
         let square = |length: f64| (length / unit_of_length) * (length / unit_of_length);
-        let pairs = contacts.all_pairs().map(|(places, length)| (places, square(length)));
+        // Points never meet points.
+        let pairs = contacts.pairs_of_all().filter(|(_, length)| *length > 0.0);
+        let pairs = pairs.map(|(places, length)| (places, square(length)));
         Some(Self { bodies: vec![[[[0.0; WIDTH + 1]; 3]; 4]; count], pairs: pairs.collect() })
     }
 

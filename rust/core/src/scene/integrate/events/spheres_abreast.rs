@@ -9,9 +9,6 @@ use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 
-/// Of more bodies nobody looks at all pairs.
-const MOST: usize = 16;
-
 /// A pair in every lane.
 #[derive(Clone, Copy)]
 struct Pair {
@@ -32,26 +29,21 @@ pub(super) struct SpheresAbreast {
 impl SpheresAbreast {
     /// Of units whose bodies lie like these, if they are few; each has still to begin.
     pub(super) fn of(contacts: &Contacts, bodies: &Bodies) -> Option<Self> {
-        let count = contacts.count();
-        if count > MOST {
-            return None;
-        }
+        let _ = contacts.few()?;
         let zero = Lanes::zero();
-        let pair = |i: usize, j: usize| Pair {
+        let pair = |([i, j], _): ([usize; 2], f64)| Pair {
             rows: [bodies.row(i), bodies.row(j)],
             square: zero,
             value: zero,
             rate: zero,
         };
-        Some(Self { pairs: (0..count).flat_map(|j| (0..j).map(move |i| pair(i, j))).collect() })
+        Some(Self { pairs: contacts.pairs_of_all().map(pair).collect() })
     }
 
     /// A unit begins in a lane.
     pub(super) fn begin(&mut self, lane: usize, contacts: &Contacts, unit_of_length: f64) {
-        let count = contacts.count();
-        let pairs = (0..count).flat_map(|j| (0..j).map(move |i| [i, j]));
-        for (pair, places) in self.pairs.iter_mut().zip(pairs) {
-            let length = contacts.length(places) / unit_of_length;
+        for (pair, (_, length)) in self.pairs.iter_mut().zip(contacts.pairs_of_all()) {
+            let length = length / unit_of_length;
             pair.square.0[lane % WIDTH] = length * length;
         }
     }
