@@ -24,7 +24,9 @@ def ended_at_the_stop(result: dict[str, Any], asked: _Request) -> None:
     there |= {"position": last["position"], "velocity": last["velocity"], "t0": float(last["t"][0])}
     if there["rigid"] is not None:
         there["rigid"] = there["rigid"] | {name: last[name] for name in ("orientation", "angular_velocity")}
-    there |= {"times": last["t"], "end_only": False, "events": [], "collisions": None, "restitution": None}
+    # Bodies that are parts of others pull nothing, which those that pass through each other would.
+    merges = "merge" if asked["collisions"] == "merge" else None
+    there |= {"times": last["t"], "end_only": False, "events": [], "collisions": merges, "restitution": None}
     there |= {"continuation": None}
     row = _core.run(cast("_Request", there), threads=1, progress=None, ensemble=False)
     result["t"] = np.concatenate([result["t"], row["t"]])

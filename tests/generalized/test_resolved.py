@@ -214,3 +214,18 @@ def test_what_has_blown_up_is_told_wherever_it_ends(method: str, dt: float) -> N
     for t in np.linspace(60.0, 96.0, 7):
         with pytest.warns(vv.AccuracyWarning, match="energy"):
             swinging.run(t=float(t), method=method, dt=dt)  # type: ignore[arg-type]
+
+
+def test_a_copy_that_fails_beside_one_that_does_not() -> None:
+    """The look at the steps of both was an error of shapes, and the run was lost."""
+    driven = vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 - q[0] ** 2 / 3 - q[0] ** 4 / 4 + 0.9 * q[0] * np.cos(t), ["x"], position=[0.3]
+    )
+    starts = [[0.3], [2.92]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", vv.AccuracyWarning)
+        out = driven.ensemble(position=starts).run(5.0, method="euler", dt=0.1)
+        alone = driven.at(position=starts[0]).run(5.0, method="euler", dt=0.1)
+    assert out.status.tolist() == [vv.Status.OK, vv.Status.NOT_FINITE]
+    np.testing.assert_array_equal(out[0].final.position, alone.final.position)
+    assert np.isnan(out.position[1, -1]).all()

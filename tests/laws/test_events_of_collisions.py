@@ -102,3 +102,25 @@ def test_jumps_of_copies_are_those_that_each_has_alone() -> None:
         own = by_one.events.member == copy
         np.testing.assert_array_equal(by_one.events.t[own], alone.events.t)
         np.testing.assert_array_equal(by_one.events.velocity[own], alone.events.velocity)
+
+
+@pytest.mark.parametrize("asked", [5.0, [0.0, 5.0]])
+def test_an_event_that_ends_a_run_after_a_merger(asked: Any) -> None:
+    """The last row was asked of bodies in one place that pulled each other: refused, and all that was run was lost."""
+    place, velocity = [[0, 0, 0], [1.0, 0, 0], [0, 3.0, 0]], [[0, 0, 0], [-1.0, 0, 0], [0, -0.5, 0]]
+    scene = vv.Scene(vv.Particles([1.0, 0.1, 0.1], place, velocity, radius=[0.1, 0.1, 0.01]), vv.Gravity(1.0))
+    end = [vv.events.distance(0, 2, below=1.5, terminal=True)]
+    record = ("position", "velocity", "energy", "momentum")
+    out = scene.run(t=asked, collisions="merge", events=end, record=record)
+    assert out.status == vv.Status.STOPPED
+    assert len(out.collisions) == len(out.events) == 1
+    last = out.final.particles
+    assert np.linalg.norm(last.position[2] - last.position[0]) == pytest.approx(1.5, rel=1e-13, abs=0)
+    # Merged bodies are in one place; momentum is what it was.
+    np.testing.assert_array_equal(last.position[0], last.position[1])
+    np.testing.assert_allclose(last.mass @ last.velocity, [-0.1, -0.05, 0.0], rtol=0, atol=1e-13)
+    if asked == 5.0:
+        np.testing.assert_array_equal(out.position[-1], last.position)
+        np.testing.assert_allclose(out.momentum[-1], [-0.1, -0.05, 0.0], rtol=0, atol=1e-13)
+        kinetic = 0.5 * last.mass @ (last.velocity**2).sum(axis=1)
+        np.testing.assert_allclose(out.energy[-1], kinetic - 1.1 * 0.1 / 1.5, rtol=1e-12, atol=0)

@@ -18,6 +18,7 @@ from visviva._text import count
 from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
 from visviva.generalized._columns import StateColumns, exported
+from visviva.generalized._rows import rows_of_copies
 from visviva.generalized._saved import Saved
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
 from visviva.status import Status
@@ -90,14 +91,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         self.status = np.array([STATUS[ending] for ending in result["endings"]])
         self.steps = np.array(result["steps"])
         self.evaluations = np.array(result["evaluations"])
-        shape = (len(self.status), len(self.t), ensemble._states.shape[1])
-        if all(length == len(self.t) for length in result["lengths"]):
-            self._states: NDArray[np.float64] = result["y"].reshape(shape)
-        else:
-            self._states = np.full(shape, np.nan)
-            ends = np.cumsum([0, *result["lengths"]])
-            for member, length in enumerate(result["lengths"]):
-                self._states[member, :length] = result["y"][ends[member] : ends[member + 1]]
+        self._states = rows_of_copies(result, len(self.t))
         for array in (self._states, self.t, self.status, self.steps, self.evaluations):
             array.flags.writeable = False
         self._columns: NDArray[np.float64] | None = None

@@ -22,6 +22,7 @@ from visviva._accuracy import (
     warn_of_step,
 )
 from visviva.errors import Interrupted
+from visviva.generalized._rows import rows_of_copies
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,13 +55,12 @@ class _Done:
     def again(
         self, changed: dict[str, Any], states: NDArray[np.float64], copies: slice = slice(None)
     ) -> NDArray[np.float64]:
-        """The states (copies, times, 2n) of copies that are run once more, otherwise; fewer times where it fails."""
+        """The states (copies, times, 2n) of copies that are run once more, otherwise; NaN from where one fails."""
         asked = self.asked | {"events": [], "looked_for": ()} | changed
         result = self.system._run(asked, states[copies], self.values[copies], self.threads, progress=False)
         if result["interrupted"]:
             raise Interrupted("the look at a run that was done was interrupted")
-        y: NDArray[np.float64] = result["y"].reshape(len(states[copies]), -1, states.shape[1])
-        return y
+        return rows_of_copies(result, len(asked["outputs"]))
 
 
 def warn_if_unresolved(
@@ -174,7 +174,7 @@ def _off_after_steps(done: _Done, before: tuple[NDArray[np.float64], float], ste
     after = []
     for length in (dt, 0.5 * dt):
         y = done.again({"span": (t, at), "outputs": np.array([at]), "dt": length}, states)
-        after.append(y[:, -1] if y.shape[1] else np.full_like(states, np.nan))
+        after.append(y[:, -1])
     with np.errstate(all="ignore"):
         told = [(after[0], at), (after[1], at), before, done.lasts]
         p = np.stack([y[:, n:] for y, _ in told])
@@ -225,7 +225,7 @@ def _on_the_way(done: _Done, copy: int) -> tuple[float, float]:
     outputs = np.linspace(system.t0, t, _ON_THE_WAY)
     way = {"outputs": outputs, "span": (system.t0, t)}
     states = done.again(way, done.starts, slice(copy, copy + 1))[0]
-    energies, sizes = _energies(system, outputs[: len(states)], states, np.tile(done.values[copy], (len(states), 1)))
+    energies, sizes = _energies(system, outputs, states, np.tile(done.values[copy], (len(states), 1)))
     known = np.isfinite(sizes)
     changes = np.abs(energies - energies[:1])
     largest, change = (float(np.max(each, initial=0.0, where=known)) for each in (sizes, changes))
