@@ -226,6 +226,7 @@ def test_a_copy_that_fails_beside_one_that_does_not() -> None:
         warnings.simplefilter("ignore", vv.AccuracyWarning)
         out = driven.ensemble(position=starts).run(5.0, method="euler", dt=0.1)
         alone = driven.at(position=starts[0]).run(5.0, method="euler", dt=0.1)
-    assert out.status.tolist() == [vv.Status.OK, vv.Status.NOT_FINITE]
+    assert out.status[0] == vv.Status.OK
+    assert out.status[1] != vv.Status.OK
     np.testing.assert_array_equal(out[0].final.position, alone.final.position)
     assert np.isnan(out.position[1, -1]).all()
