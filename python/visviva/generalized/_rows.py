@@ -13,7 +13,7 @@ __all__ = ["rows_of_copies"]
 
 
 def rows_of_copies(result: dict[str, Any], times: int) -> NDArray[np.float64]:
-    """States (copies, times, 2n), NaN beyond the last, of the core's result, which has those of one copy after another."""
+    """States (copies, times, 2n), NaN beyond the last, of a result that has those of one copy after another."""
     lengths, y = result["lengths"], result["y"]
     if all(length == times for length in lengths):
         states: NDArray[np.float64] = y.reshape(len(lengths), times, y.shape[1])
