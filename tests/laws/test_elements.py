@@ -159,3 +159,12 @@ def test_on_a_straight_line_the_anomalies_have_one_sign(speed: float) -> None:
             assert found.true_anomaly == sign * np.pi
             assert np.sign(found.time_since_pericenter) == sign
     assert vv.orbits.elements(1.0, [1.0, 0, 0], [0.0, 0, 0]).true_anomaly == np.pi
+
+
+def test_elements_are_not_changed_with_what_they_were_made_of() -> None:
+    mu, position, velocity = np.array([1.0, 2.0]), np.array([[1.0, 0, 0]] * 2), np.array([[0, 1.0, 0], [0, 1.2, 0]])
+    found = vv.orbits.elements(mu, position, velocity)
+    mu[0], position[0], velocity[0] = 9.0, 9.0, 9.0
+    np.testing.assert_array_equal(found.mu, [1.0, 2.0])
+    # A circle of radius 1.
+    np.testing.assert_allclose(found.semi_latus_rectum[0], 1.0, rtol=1e-15, atol=0)

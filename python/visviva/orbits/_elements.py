@@ -301,4 +301,4 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     """
     shape, (mu_,), (position_, velocity_) = broadcast({"mu": mu}, {"position": position, "velocity": velocity})
     columns = _core.orbit_elements(mu_, position_, velocity_)
-    return Elements(mu=with_shape(mu_, shape), **fields(columns, shape))
+    return Elements(mu=with_shape(mu_.copy(), shape), **fields(columns, shape))

@@ -10,7 +10,7 @@ use super::Watch;
 use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
 
 /// Of more bodies a sweep along their boxes, step by step, takes less time than all pairs eight steps at a time.
-const FEW: usize = 12;
+const FEW: usize = 24;
 
 /// A pair under watch in the step at hand: their places among the bodies that are looked at.
 pub(super) struct Pair {
