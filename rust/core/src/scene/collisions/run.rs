@@ -7,6 +7,7 @@ mod fly;
 mod jumps;
 mod leg;
 mod member;
+mod settled;
 mod squeezed;
 mod start;
 
