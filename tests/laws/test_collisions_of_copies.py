@@ -30,7 +30,7 @@ def check(ensemble: vv.Ensemble, **how: Any) -> int:
     for threads in (1, 3):
         together = ensemble.run(threads=threads, **how)
         with_contacts = 0
-        for copy in range(COPIES):
+        for copy in range(len(ensemble)):
             single = ensemble[copy].run(threads=1, **how)
             own = together[copy]
             assert own.status == single.status == together.status[copy]
@@ -48,7 +48,7 @@ def check(ensemble: vv.Ensemble, **how: Any) -> int:
                 assert own.events.t.tolist() == single.events.t.tolist()
                 assert own.events.which.tolist() == single.events.which.tolist()
             with_contacts += len(single.collisions) > 0
-        assert len(together.collisions.t) == sum(len(together[copy].collisions) for copy in range(COPIES))
+        assert len(together.collisions.t) == sum(len(together[copy].collisions) for copy in range(len(ensemble)))
     return with_contacts
 
 
@@ -119,3 +119,19 @@ def test_copies_in_which_nothing_acts_meet_as_alone(first: str) -> None:
             if mass == free:
                 # The distance is 1 − t, to the sum of the radii.
                 assert run[copy].collisions.t == pytest.approx([0.8], rel=1e-15, abs=0)
+
+
+@pytest.mark.parametrize("method", [{"method": "leapfrog", "dt": 0.01}, {"method": "dop853"}])
+@pytest.mark.parametrize(("massive", "massless", "copies"), [(10, 0, 9), (30, 0, 4), (3, 300, 3)])
+def test_more_bodies_than_share_lanes(massive: int, massless: int, copies: int, method: dict[str, Any]) -> None:
+    """Ten are looked at in lanes over steps, thirty and hundreds of massless ones by a sweep; masses are their own."""
+    rng = np.random.default_rng(massive)
+    count = massive + massless
+    mass = np.r_[rng.uniform(0.5, 1.0, massive) / massive, np.zeros(massless)]
+    radius = np.r_[np.full(massive, 0.04), np.zeros(massless)]
+    place, velocity = rng.normal(size=(count, 3)), 0.3 * rng.normal(size=(count, 3))
+    scene = vv.Scene(vv.Particles(mass, place, velocity, radius=radius), vv.Gravity(1.0, softening=0.05))
+    own = {"mass": mass * np.linspace(0.8, 1.2, copies)[:, None]}
+    ensemble = scene.ensemble(velocity=velocity + 0.05 * rng.normal(size=(copies, count, 3)), **own)
+    # Or the test would compare nothing.
+    assert check(ensemble, t=np.linspace(0.0, 2.0, 5), collisions="merge", **method) >= 2

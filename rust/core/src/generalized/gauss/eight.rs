@@ -3,8 +3,9 @@
 //! The one idea: a lane that starts, is refused or ends is a bit of a mask; whatever is decided of its step, its own [`Pace`]
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
+use super::columns::found;
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns::{advance, found};
+use super::columns_end::advance;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
 use super::rounding::HARDLY;

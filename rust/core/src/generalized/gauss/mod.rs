@@ -8,6 +8,7 @@
 
 mod changes;
 mod columns;
+mod columns_end;
 mod eight;
 mod ending;
 mod pace;
