@@ -7,41 +7,35 @@ when it is made, and a run of a closed form costs little more than the call.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from visviva import _core
-from visviva import forces as force_classes
 from visviva._arrays import number
 from visviva._body_force import BodyForce
 from visviva._continuation import with_continuation
 from visviva._frames import Framed
 from visviva._html import Sheet
-from visviva._keywords import JOINING, known_keywords
-from visviva._text import article
+from visviva._keywords import known_keywords
+from visviva._scene_parts import sorted_parts
+from visviva._scene_state import AtPresent
 from visviva._turning import described, joined_bodies, with_centers
-from visviva.errors import InvalidInput
 from visviva.forces import Force
-from visviva.particles import Particles
-from visviva.rigid_bodies import RigidBodies
 from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from typing import TypeAlias
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from visviva import _core
+    from visviva._scene_parts import Part
     from visviva.advice import Advice
     from visviva.ensemble import EnsembleScene
-    from visviva.invariants import Invariants
-    from visviva.orbits import Elements
+    from visviva.particles import Particles
     from visviva.request import RunRequest
-
-    _Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
+    from visviva.rigid_bodies import RigidBodies
 
 __all__ = ["Scene"]
 
@@ -71,7 +65,7 @@ _ELSEWHERE = {
 
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class Scene(Runnable[Trajectory], Framed):
+class Scene(Runnable[Trajectory], Framed, AtPresent):
     """Particles and the forces on them, at a time.
 
     Units: those of the caller, one consistent system; angles in radians.
@@ -129,25 +123,12 @@ class Scene(Runnable[Trajectory], Framed):
 
     def __init__(
         self,
-        *parts: _Part | Sequence[_Part],
+        *parts: Part | Sequence[Part],
         particles: Particles | None = None,
         forces: Force | BodyForce | Sequence[Force | BodyForce] = (),
         t0: float = 0.0,
     ) -> None:
-        by_name = () if particles is None else (particles,)
-        all_parts = tuple(chain.from_iterable(_flat(part) for part in (*parts, *by_name, forces)))
-        found = [part for part in all_parts if isinstance(part, Particles)]
-        rigid = [part for part in all_parts if isinstance(part, RigidBodies)]
-        named = sum(len(_flat(part)) for part in (*parts, *by_name))  # what follows came as forces=
-        for place, part in enumerate(all_parts):
-            if not isinstance(part, Particles | RigidBodies | Force | BodyForce):
-                came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
-                known = ", ".join(name for name in force_classes.__all__ if name != "Force")
-                argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
-                raise InvalidInput(argument, f"expected {wanted}forces ({known}), got {came}")
-        if len(found) > 1 or not (found or rigid):
-            advice = JOINING if found else "the forces need bodies to act on"
-            raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
+        all_parts, found, rigid = sorted_parts(parts, particles, forces)
         bodies = joined_bodies(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]
         acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
@@ -220,16 +201,6 @@ class Scene(Runnable[Trajectory], Framed):
     def __reduce__(self) -> tuple[Any, ...]:
         turning = (self.rigid_bodies, self.body_forces)
         return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"], *turning)
-
-    @property
-    def _turns_freely(self) -> bool:
-        """Whether nothing turns the rigid bodies, if there are some."""
-        rigid = self.rigid_bodies
-        if rigid is None:
-            return True
-        round_ones = (rigid.principal_moments == rigid.principal_moments[:, :1]).all()
-        pulled = len(self.particles) > 1 and any(isinstance(force, force_classes.Gravity) for force in self.forces)
-        return not (self.body_forces or rigid.pivoted.any() or (pulled and not round_ones))
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -364,117 +335,6 @@ class Scene(Runnable[Trajectory], Framed):
         asked = PlanRequest(t).to_core(self._keywords, self._names)
         return advise(self._keywords, asked, accuracy, of, closed=self._turns_freely and self.plan(t).closed_form)
 
-    def acceleration(self) -> NDArray[np.float64]:
-        """Accelerations of the bodies at the scene's state and time, shape (N, 3), in the units of the scene.
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-            Length per time², in the units of the scene; of rigid bodies that of their centers, after the particles.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            Beside rigid bodies that torques turn.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.Scene(vv.Particles([8.0, 0.0], [[0, 0, 0], [2, 0, 0]]), vv.Gravity(G=1.0)).acceleration()[1]
-        array([-2.,  0.,  0.])
-        """
-        from visviva._mergers import hosts, remaining
-
-        if not self._turns_freely:
-            raise InvalidInput("rigid_bodies", "accelerations are not available for rigid bodies under torques")
-
-        p = self.particles
-        parts = hosts(p)
-        if parts is not None:
-            place = np.searchsorted(np.unique(parts), parts)
-            return remaining(self, parts).acceleration()[place]
-        return _core.acceleration(
-            mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity, t0=self.t0
-        )
-
-    def invariants(self, about: ArrayLike | str | None = None) -> Invariants:
-        """Momentum, angular momentum, energy, center of mass and König's split at the scene's state.
-
-        Units: those of the scene.
-
-        Parameters
-        ----------
-        about : array_like, shape (3,), or "center_of_mass", optional
-            The reference point of angular momentum, torque and virial; the origin by default.
-
-        Returns
-        -------
-        Invariants
-
-        Raises
-        ------
-        visviva.InvalidInput
-            For another reference point.
-
-        References
-        ----------
-        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.problems.pythagorean().scene.invariants().energy
-        -12.816666666666666
-        """
-        from visviva.invariants import invariants_of
-
-        return invariants_of(self, about)
-
-    def elements(
-        self,
-        bodies: str | int | Sequence[str | int] | None = None,
-        *,
-        about: str | int = 0,
-        G: float | None = None,
-    ) -> Elements:
-        """The osculating elements of bodies at the scene's state: the way back from `Particles.from_elements`.
-
-        Units: those of the scene; angles in radians.
-
-        Parameters
-        ----------
-        bodies, about, G : optional
-            As of `Trajectory.elements`.
-
-        Returns
-        -------
-        Elements
-            Arrays of shape (K,) for K bodies, numbers for one that was given alone.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            As of `Trajectory.elements`.
-
-        References
-        ----------
-        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> planets = vv.datasets.outer_solar_system().scene
-        >>> planets.elements(about="Sun").eccentricity.round(3).tolist()
-        [0.048, 0.053, 0.046, 0.007, 0.255]
-        """
-        from visviva._mergers import hosts
-        from visviva._osculating import elements_of
-
-        p = self.particles
-        parts = hosts(p)
-        merged = None if parts is None else (parts != np.arange(len(p)), p.mass)
-        return elements_of(self, p.position, p.velocity, bodies, about, G, merged)
-
     def _like(
         self,
         particles: Particles,
@@ -496,10 +356,6 @@ class Scene(Runnable[Trajectory], Framed):
         points = with_centers([particles[: len(particles) - len(rigid)]], rigid, particles.names)
         scene._set(points, tuple(forces), number("t0", t0), rigid, loads, told)
         return scene
-
-
-def _flat(part: object) -> Sequence[object]:
-    return part if isinstance(part, list | tuple) else (part,)
 
 
 def _rebuild(
