@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,18 +13,16 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
-from visviva.generalized._columns import StateColumns, exported
+from visviva.generalized._columns import exported
+from visviva.generalized._pictures import Drawn
 from visviva.generalized._saved import Saved
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from os import PathLike
+    from collections.abc import Sequence
 
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from visviva.events import Event
     from visviva.generalized._events import GeneralizedEventTable
@@ -55,7 +53,7 @@ def check_run(trajectory: object) -> None:
 
 
 @known_keywords
-class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved, Shown):
+class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -266,135 +264,3 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved
             scale = max(float(np.abs(values).max()), whole)
             changes[name] = float(np.ptp(values)) / scale if scale > 0.0 else 0.0
         return changes
-
-    def plot(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the coordinates over time.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where; a new one if not given.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Raises
-        ------
-        visviva.InvalidInput
-            If matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> ax = vv.systems.pendulum().run(t=np.linspace(0, 10, 200)).plot()
-        >>> ax.get_xlabel()
-        't'
-        """
-        from visviva._style import legend_beside
-        from visviva.plot import axes_or_new
-
-        ax = axes_or_new(ax)
-        for index, name in enumerate(self.system.coordinates):
-            ax.plot(self.t, self.position[:, index], label=name)
-        ax.set_xlabel("t")
-        ax.set_ylabel(", ".join(self.system.coordinates) if len(self.system.coordinates) < 4 else "coordinates")
-        if len(self.system.coordinates) > 1:
-            legend_beside(ax)
-        return ax
-
-    def plot_phase(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
-        """Draw a coordinate against its momentum.
-
-        Parameters
-        ----------
-        name : str, optional
-            The coordinate; the first if not given.
-        ax : matplotlib.axes.Axes, optional
-            Where; a new one if not given.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Raises
-        ------
-        InvalidInput
-            For a coordinate that is not there, what are no axes, or if matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> ax = vv.systems.pendulum().run(t=np.linspace(0, 10, 200)).plot_phase("theta")
-        >>> ax.get_xlabel()
-        'theta'
-        """
-        from visviva.plot import axes_or_new
-
-        name = self.system.coordinates[0] if name is None else name
-        ax = axes_or_new(ax)
-        ax.plot(self[name], self.momentum[:, self.system.coordinates.index(name)])
-        ax.set_xlabel(name)
-        ax.set_ylabel(f"momentum of {name}")
-        return ax
-
-    def animate(
-        self,
-        path: str | PathLike[str] | None = None,
-        *,
-        points: Callable[..., Sequence[Sequence[ArrayLike]]] | None = None,
-        plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
-        trail: float = 0.1,
-        frames: int = 200,
-        fps: int = 25,
-    ) -> FuncAnimation:
-        """Show the system as it moves, its points joined by lines, and save that as a GIF, MP4 or HTML page.
-
-        Frames are outputs of the run, those nearest to evenly spaced times: give the run as many as should be seen.
-
-        Parameters
-        ----------
-        path : str or PathLike, optional
-            A file ending in ``.gif``, ``.html`` or ``.mp4``, which needs ffmpeg (``pip install 'visviva[video]'``
-            brings one); nothing is written without a path.
-        points : callable, optional
-            ``points(q, t, **parameters)`` gives the places of what is drawn, each of two or three numbers or arrays
-            over time, in the order in which lines join them; ``q[0]`` is the first coordinate, shape (T,). Those of
-            `systems` know theirs, with y upwards in a plane and z upwards in space.
-        plane : str, optional
-            What is shown: ``"xy"``, ``"xz"``, ``"yz"`` or ``"xyz"``; space where points have a third number, else xy.
-        trail : float
-            For how much of the run, from 0 to 1 without dimension, the way of each point is shown behind it.
-        frames : int
-            At most so many.
-        fps : int
-            Frames a second.
-
-        Returns
-        -------
-        matplotlib.animation.FuncAnimation
-            In a notebook ``IPython.display.HTML(out.animate().to_jshtml())`` shows it.
-
-        Raises
-        ------
-        InvalidInput
-            If nobody said where the points are, they are no numbers, the run has no time, matplotlib or what writes the
-            file is not installed, or an argument is not one of these.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> out = vv.systems.double_pendulum().run(t=np.linspace(0.0, 2.0, 51))
-        >>> len(list(out.animate().new_frame_seq()))
-        51
-
-        A system of one's own says where its points are, here a bead on a parabola:
-
-        >>> bead = vv.Lagrangian(
-        ...     lambda q, v, t: v[0] ** 2 * (1 + 4 * q[0] ** 2) / 2 - 9.81 * q[0] ** 2, ["x"], position=[1.0]
-        ... )
-        >>> moving = bead.run(t=np.linspace(0.0, 2.0, 51)).animate(points=lambda q, t: [(q[0], q[0] ** 2)])
-        """
-        from visviva.generalized._points import animate
-
-        return animate(self, path, points, plane, {"trail": trail, "frames": frames, "fps": fps})
