@@ -12,24 +12,18 @@ from visviva._arrays import float_array, number
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._nutation import Nutation, SteadyPrecession
+from visviva.rigid._nutation import Nutation
+from visviva.rigid._steady_precession import Steady, from_the_vertical
 from visviva.rigid._top_motion import TopMotion
-from visviva.rigid._top_potential import TopMomenta, effective_potential, weight
+from visviva.rigid._top_potential import TopMomenta, effective_potential
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-def _from_the_vertical(theta: float) -> float:
-    angle = number("theta", theta)
-    if not 0.0 <= angle <= np.pi:
-        raise InvalidInput("theta", f"expected an angle in [0, π], got {angle}")
-    return angle
-
-
 @known_keywords
 @dataclass(frozen=True, slots=True, repr=False)
-class HeavyTop(Record):
+class HeavyTop(Record, Steady):
     """A symmetric top that turns about a fixed point on its axis, in uniform gravity.
 
     Angles are Euler's, z–x–z: θ from the vertical up to the axis, φ about the vertical, ψ about the axis. The spin is
@@ -75,114 +69,6 @@ class HeavyTop(Record):
             object.__setattr__(self, name, number(name, getattr(self, name)))
         _core.top_sleeping_threshold(self._numbers)
 
-    @property
-    def _numbers(self) -> tuple[float, float, float, float, float]:
-        return self.A, self.C, self.mass, self.g, self.R
-
-    @property
-    def sleeping_threshold(self) -> float:
-        """The spin above which the top stays upright, (C ω₃)² = 4 A M g R, in radians per time."""
-        return _core.top_sleeping_threshold(self._numbers)
-
-    def least_spin(self, theta: float) -> float:
-        """Give the least spin of a steady precession at an angle: 2√(A M g R cos θ)/C, and 0 from the horizontal down.
-
-        Units: angles in radians, rates in radians per time.
-
-        Parameters
-        ----------
-        theta : float
-            Angle of the axis from the vertical.
-
-        Returns
-        -------
-        float
-            Radians per unit of time.
-
-        Raises
-        ------
-        InvalidInput
-            For an angle outside [0, π], NaN or infinity.
-
-        References
-        ----------
-        Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.7.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).least_spin(2.0)
-        0.0
-        """
-        return _core.top_least_spin(self._numbers, _from_the_vertical(theta))
-
-    def steady_precession(self, theta: float, spin: float) -> SteadyPrecession:
-        """Give both rates of steady precession: A cos θ Ω² − C ω₃ Ω + M g R = 0.
-
-        Units: angles in radians, rates in radians per time.
-
-        Parameters
-        ----------
-        theta : float
-            Angle of the axis from the vertical; beyond π/2 the top hangs.
-        spin : float
-            ω₃, of either sign.
-
-        Returns
-        -------
-        SteadyPrecession
-            ``slow`` and ``fast``; of a hanging top they have opposite signs.
-
-        Raises
-        ------
-        InvalidInput
-            For a spin below `least_spin`.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
-        >>> round(top.steady_precession(2.4, 50.0).fast, 12)
-        -13.950126683391
-        """
-        rates, _ = self._precessions(theta, spin)
-        return SteadyPrecession(*rates)
-
-    def weak_torque_precession(self, spin: float) -> float:
-        """Give the rate M g R/(C ω₃) at which a fast top goes round, at any angle.
-
-        It is the limit of the slow steady precession for (C ω₃)² ≫ A M g R, off by about A M g R cos θ/(C ω₃)² of
-        itself; see `steady_precession` for the rate itself.
-
-        Units: angles in radians, rates in radians per time.
-
-        Parameters
-        ----------
-        spin : float
-            ω₃, of either sign.
-
-        Returns
-        -------
-        float
-            Radians per unit of time.
-
-        Raises
-        ------
-        InvalidInput
-            For a spin of 0.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
-        >>> top.weak_torque_precession(500.0), round(top.steady_precession(0.3, 500.0).slow, 6)
-        (0.04, 0.040015)
-        """
-        own = number("spin", spin)
-        if own == 0.0:
-            raise InvalidInput("spin", "expected a top that spins, got 0.0")
-        return weight(self) / self.C / own
-
     def momenta(self, theta: float, *, psi_dot: float, phi_dot: float = 0.0) -> TopMomenta:
         """Give the momenta p_φ = A φ̇ sin²θ + p_ψ cos θ and p_ψ = C (ψ̇ + φ̇ cos θ), which stay what they are.
 
@@ -210,7 +96,7 @@ class HeavyTop(Record):
         >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).momenta(0.0, psi_dot=50.0)
         TopMomenta(p_phi=50.0, p_psi=50.0)
         """
-        angle, spin, around = _from_the_vertical(theta), number("psi_dot", psi_dot), number("phi_dot", phi_dot)
+        angle, spin, around = from_the_vertical(theta), number("psi_dot", psi_dot), number("phi_dot", phi_dot)
         sine, cosine = float(np.sin(angle)), float(np.cos(angle))
         along = self.C * (spin + around * cosine)
         return TopMomenta(self.A * around * sine * sine + along * cosine, along)
@@ -258,41 +144,6 @@ class HeavyTop(Record):
             raise InvalidInput("theta", f"expected angles in [0, π], got {outside}")
         return effective_potential(self, angles, number("p_phi", p_phi), number("p_psi", p_psi))
 
-    def nutation_frequency(self, theta: float, spin: float) -> SteadyPrecession:
-        """Give the frequencies of small nutations about the slow and the fast steady precession.
-
-        Units: angles in radians, rates in radians per time.
-
-        Parameters
-        ----------
-        theta : float
-            Angle of the axis from the vertical.
-        spin : float
-            ω₃, of either sign.
-
-        Returns
-        -------
-        SteadyPrecession
-            ``slow`` and ``fast``: the frequency about each.
-
-        Raises
-        ------
-        InvalidInput
-            As `steady_precession`.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
-        >>> round(top.nutation_frequency(0.3, 50.0).slow, 9)
-        9.204877599
-        """
-        _, frequencies = self._precessions(theta, spin)
-        return SteadyPrecession(*frequencies)
-
-    def _precessions(self, theta: float, spin: float) -> tuple[list[float], list[float]]:
-        return _core.top_steady_precession(self._numbers, _from_the_vertical(theta), number("spin", spin))
-
     def nutation(self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0) -> Nutation:
         """Give the nutation of a top from where it is and how it turns.
 
@@ -325,7 +176,7 @@ class HeavyTop(Record):
         ('cusp', 0.3, 0.682256015831)
         """
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
-        found = _core.top_nutation(self._numbers, _from_the_vertical(theta), *rates)
+        found = _core.top_nutation(self._numbers, from_the_vertical(theta), *rates)
         low, high = found["theta"]
         one, two, three = found["roots"]
         return Nutation(
@@ -429,7 +280,7 @@ class HeavyTop(Record):
         array([  0.   ,   4.2  , 416.468])
         """
         times = float_array("t", t, None)
-        angles = (_from_the_vertical(theta), number("phi", phi), number("psi", psi))
+        angles = (from_the_vertical(theta), number("phi", phi), number("psi", psi))
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
         found = _core.top_motion(self._numbers, angles, rates, times.ravel())
         columns = [np.ascontiguousarray(column).reshape(times.shape) for column in found.T]
