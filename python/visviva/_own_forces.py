@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._declared import VECTORS, as_comparable
+from visviva._declared import as_comparable
 from visviva._keywords import did_you_mean
+from visviva._parameter import VECTORS
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce, Force
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva import _core
-    from visviva._declared import Parameter
+    from visviva._parameter import Parameter
     from visviva.scene import Scene
 
     _Values: TypeAlias = NDArray[np.float64] | Sequence[Any]

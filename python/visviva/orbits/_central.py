@@ -9,9 +9,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive
-from visviva._declared import wrapped
 from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
+from visviva._parameter import wrapped
 from visviva._text import short_repr, table
 from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, fields, with_shape

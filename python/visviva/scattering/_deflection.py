@@ -9,10 +9,10 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
-from visviva._declared import checked_potential
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._made_by import NamedCode
+from visviva._parameter import checked_potential
 from visviva._text import count
 from visviva.errors import InvalidInput
 

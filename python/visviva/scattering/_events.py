@@ -8,9 +8,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import whole_number
-from visviva._declared import checked_potential
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._packages import needed
+from visviva._parameter import checked_potential
 from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import Interrupted

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, positive
-from visviva._declared import wrapped
 from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._parameter import wrapped
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
 

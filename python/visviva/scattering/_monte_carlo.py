@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from visviva._arrays import float_array, number, positive
-from visviva._declared import checked_potential
 from visviva._keywords import known_keywords
+from visviva._parameter import checked_potential
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for

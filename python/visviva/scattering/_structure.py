@@ -9,9 +9,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
-from visviva._declared import checked_potential
 from visviva._html import Record
 from visviva._keywords import known_keywords
+from visviva._parameter import checked_potential
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
