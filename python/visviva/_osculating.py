@@ -3,7 +3,7 @@
 The one idea: the orbit of a body is that of the relative motion of two: itself, and what it is about, which has a
 place and a mass. μ = G (mass there + its own mass), so that two bodies have the elements of their true conic whichever
 of them the other is about.
-Source: Murray & Dermott, *Solar System Dynamics* (1999) §2.8, §9.7 (Jacobi coordinates).
+Source: Murray & Dermott, *Solar System Dynamics* (1999) §2.8.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._about_centers import relative_to_center
 from visviva._arrays import number
 from visviva._exported import labels
 from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, body_label
@@ -23,14 +24,11 @@ from visviva.orbits._elements import labeled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from typing import TypeAlias
 
     from numpy.typing import NDArray
 
     from visviva.forces import Force
     from visviva.runnable import Runnable
-
-    _Relative: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = ["elements_of", "gravitational_constant"]
 
@@ -185,54 +183,13 @@ def _relative(
     mass: NDArray[np.float64],
     chosen: NDArray[np.intp],
     parent: str | int,
-) -> _Relative:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Places and velocities (…, K, 3) from what each body is about, and the mass there, (…, K) or (…, 1)."""
     if isinstance(parent, int):
         around = slice(parent, parent + 1)
         r, v = (values[..., chosen, :] - values[..., around, :] for values in (position, velocity))
         return r, v, mass[..., around]
-    r, v = (np.empty((*position.shape[:-2], len(chosen), 3)) for _ in range(2))
-    attracting = np.empty((*mass.shape[:-1], len(chosen)))
-    parts = (
-        _jacobi(position, velocity, mass, chosen)
-        if parent == JACOBI
-        else (_others(position, velocity, mass, body) for body in chosen)
-    )
-    for column, part in enumerate(parts):
-        r[..., column, :], v[..., column, :], attracting[..., column] = part
-    return r, v, attracting
-
-
-def _jacobi(
-    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], chosen: NDArray[np.intp]
-) -> list[_Relative]:
-    """Each relative to the center of mass of those before it, which moves by the share of each that is added."""
-    found = {}
-    center, rate, inside = position[..., 0, :], velocity[..., 0, :], mass[..., 0]
-    for body in range(1, max(chosen, default=0) + 1):
-        r, v, own = position[..., body, :] - center, velocity[..., body, :] - rate, mass[..., body]
-        found[body] = (r, v, inside)
-        total = inside + own
-        share = np.divide(own, total, out=np.zeros_like(total), where=total > 0.0)[..., None]
-        center, rate, inside = center + share * r, rate + share * v, total
-    return [found[body] for body in chosen.tolist()]
-
-
-def _others(
-    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], body: int
-) -> _Relative:
-    """Relative to the center of mass of all others: the mean of the distances, so that none is lost in a great sum."""
-    weights = np.delete(mass, body, axis=-1)
-    total = weights.sum(axis=-1)
-    shares = np.divide(weights, total[..., None], out=np.zeros_like(weights), where=total[..., None] > 0.0)[..., None]
-
-    def apart(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        mean: NDArray[np.float64] = ((values[..., body : body + 1, :] - np.delete(values, body, axis=-2)) * shares).sum(
-            axis=-2
-        )
-        return mean
-
-    return apart(position), apart(velocity), total
+    return relative_to_center(position, velocity, mass, chosen, before=parent == JACOBI)
 
 
 def _conics(mu: NDArray[np.float64], r: NDArray[np.float64], v: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
