@@ -14,6 +14,7 @@ import numpy as np
 
 from visviva._declared import as_comparable
 from visviva._keywords import did_you_mean
+from visviva._own_potentials import names_of_potential, potential_of, potentials_of_copies
 from visviva._parameter import VECTORS
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce, Force
@@ -45,11 +46,7 @@ def forces_of_copies(
         if not hasattr(named, "items") or not named:
             raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
         kinds = {parameter.name: parameter.kind for parameter in scene.forces[place]._parameters}
-        for name, given in _own_values(scene.forces[place], named).items():
-            if name not in kinds:
-                hint = did_you_mean(str(name), tuple(kinds))
-                known = f"{type(scene.forces[place]).__name__} ({', '.join(kinds)})"
-                raise InvalidInput("parameters", f"expected parameters of {known}, got {name!r}{hint}")
+        for name, given in _own_values(scene.forces[place], named, kinds).items():
             by_copy = _bodies_by_copy if kinds[name] == "indices" else _values_by_copy
             values.setdefault(place, {})[name] = by_copy(name, given)
     count = _count([pair for named in values.values() for pair in named.items()])
@@ -68,10 +65,45 @@ def _count(values: Sequence[tuple[str, _Values]]) -> int:
     return len(given)
 
 
-def _own_values(force: Force, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
-    """The given values, those of the parameters of expressions as rows of the parameter that holds them."""
-    if not isinstance(force, ExpressedForce):
+def _own_values(force: Force, named: Mapping[Any, Any], kinds: Mapping[str, str]) -> Mapping[Any, Any]:
+    """The given values, those of expressions and of potentials as the parameters of the force that hold them."""
+    if isinstance(force, ExpressedForce):
+        named = _with_expressions(force, named)
+    elif potential_of(force) is not None:
+        named = _with_potentials(force, named, kinds)
+    for name in named:
+        if name not in kinds:
+            hint = did_you_mean(str(name), tuple(kinds))
+            known = f"{type(force).__name__} ({', '.join(kinds)})"
+            raise InvalidInput("parameters", f"expected parameters of {known}, got {name!r}{hint}")
+    return named
+
+
+def _with_potentials(force: Force, named: Mapping[Any, Any], kinds: Mapping[str, str]) -> Mapping[Any, Any]:
+    """Values of the potential's parameters as a potential for each copy."""
+    held = potential_of(force)
+    given = {str(name): values for name, values in named.items() if str(name) not in kinds}
+    if held is None or not given:
         return named
+    place, potential = held
+    names = names_of_potential(potential)
+    unknown = next((name for name in given if name not in names), None)
+    if unknown is not None:
+        hint = did_you_mean(unknown, (*kinds, *names))
+        known = f"{type(force).__name__} ({', '.join(kinds)}) or of its potential ({', '.join(names)})"
+        raise InvalidInput("parameters", f"expected parameters of {known}, got {unknown!r}{hint}")
+    if place in named:
+        raise InvalidInput(
+            "parameters", f"expected a {place} for each copy or values of its parameters, got both: {place} and {given}"
+        )
+    own = {name: _values_by_copy(name, values) for name, values in given.items()}
+    _count([*own.items()])
+    rest = {name: values for name, values in named.items() if str(name) not in own}
+    return {place: potentials_of_copies(force, potential, own), **rest}
+
+
+def _with_expressions(force: ExpressedForce, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
+    """Values of the parameters of expressions as rows of the parameter that holds them."""
     from visviva.expression_force import parameter_names
 
     names = parameter_names(force)

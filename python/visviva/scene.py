@@ -234,9 +234,11 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
             Radii per copy.
         parameters : dict of dict, optional
             For some forces of the scene (each given itself, by its place among them or by the name of its class),
-            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
-            share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs: a term
-            that a value of 0 leaves out, a softening, an exponent, a table. Forces on rigid bodies are the same in all.
+            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Those
+            of its potential, of a formula by their names in it, are named alike, and copies with equal values share it.
+            Copies share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs:
+            a term that a value of 0 leaves out, a softening, an exponent, a table, a formula's parameters. Forces on
+            rigid bodies are the same in all.
         orientation : array_like, shape (B, K, 4), optional
             Quaternions of the rigid bodies per copy; points that are held stay where they are.
         angular_velocity : array_like, shape (B, K, 3), optional
