@@ -7,66 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from merging import CHARGE, FORCES, GRAVITY, HOW, MASS, OBLATE, POSITION, TIMES, VELOCITY, contact, falling
 
 import visviva as vv
 from visviva._mergers import remaining
 
-GRAVITY = vv.Gravity(1.0)
-TIMES = np.linspace(0.0, 1.8, 10)
-#: Body 1 falls on body 0, and then body 2 on what they have become; body 3 goes its way.
-MASS = [5.0, 1.0, 0.5, 0.2]
-POSITION = [[0, 0, 0], [3, 0.05, 0], [0, 4, 0], [-6, 0.3, 0.2]]
-VELOCITY = [[0, 0, 0], [-1, 0, 0], [0, -1.0, 0.02], [0, 0.5, 0]]
-CHARGE = [1.0, -0.5, 0.25, 0.125]
-OBLATE: dict[str, Any] = {"G": 1.0, "axis": [0.1, 0.2, 1.0]}
-
-
-def slowed(bodies: int | list[int]) -> vv.ExpressionForce:
-    """Drag by a gas that turns, on some bodies."""
-    return vv.ExpressionForce(
-        acceleration=lambda r, v, t, rate: [-rate * (v[0] + r[1] / 4), -rate * (v[1] - r[0] / 4), -rate * v[2]],
-        parameters={"rate": 0.2},
-        bodies=bodies,
-    )
-
-
-#: A force on four bodies, and that on bodies 0, 2 and 3 when body 1 is a part of body 0.
-FORCES: dict[str, tuple[vv.forces.Force, vv.forces.Force | None]] = {
-    "oblate host": (vv.Oblate(0, J2=0.01, radius=0.5, **OBLATE), vv.Oblate(0, J2=0.01, radius=0.5, **OBLATE)),
-    "oblate part": (vv.Oblate(1, J2=0.01, radius=0.3, **OBLATE), None),
-    "several oblate": (
-        vv.Oblate([2, 1, 0], J2=[0.01, 0.02, 0.03], radius=[0.3, 0.4, 0.5], J4=[1e-3, 2e-3, 3e-3], **OBLATE),
-        vv.Oblate([1, 0], J2=[0.01, 0.03], radius=[0.3, 0.5], J4=[1e-3, 3e-3], **OBLATE),
-    ),
-    "relativistic part": (vv.PostNewtonian(1, G=1.0, c=20.0), vv.PostNewtonian(0, G=1.0, c=20.0)),
-    "both relativistic": (vv.PostNewtonian([1, 3, 0], G=1.0, c=20.0), vv.PostNewtonian([0, 2], G=1.0, c=20.0)),
-    "spring between them": (vv.Spring(0, 1, k=0.1, length=1.0), None),
-    "springs": (
-        vv.Spring([0, 1, 3], [1, 2, 1], k=[0.1, 0.2, 0.3], length=[0.5, 0.0, 2.0]),
-        vv.Spring([0, 2], [1, 0], k=[0.2, 0.3], length=[0.0, 2.0]),
-    ),
-    "dampers": (vv.Damper([0, 1, 3], [1, 2, 1], c=[0.1, 0.2, 0.3]), vv.Damper([0, 2], [1, 0], c=[0.2, 0.3])),
-    "charges": (vv.Coulomb(CHARGE, k=0.5), vv.Coulomb([0.5, 0.25, 0.125], k=0.5)),
-    "equal charges": (vv.Coulomb(0.5, k=0.5), vv.Coulomb([1.0, 0.5, 0.5], k=0.5)),
-    "charges in an electric field": (
-        vv.UniformElectricField([0.1, 0.2, 0.3], CHARGE),
-        vv.UniformElectricField([0.1, 0.2, 0.3], [0.5, 0.25, 0.125]),
-    ),
-    "charges in a magnetic field": (
-        vv.UniformMagneticField([0.1, 0.2, 0.3], CHARGE),
-        vv.UniformMagneticField([0.1, 0.2, 0.3], [0.5, 0.25, 0.125]),
-    ),
-    # A body goes on as before when others go into it: dragged or not.
-    "an acceleration of parts": (slowed([2, 1]), slowed(1)),
-    "an acceleration of the host": (slowed([0, 1, 3]), slowed([0, 2])),
-    "an acceleration of one that goes": (slowed(1), None),
-}
 each_force = pytest.mark.parametrize("name", FORCES)
-HOW: dict[str, Any] = {"collisions": "merge", "method": "dop853", "rtol": 1e-13}
-
-
-def falling(*forces: vv.forces.Force) -> vv.Scene:
-    return vv.Scene(vv.Particles(MASS, POSITION, VELOCITY, radius=[0.5, 0.3, 0.3, 0.2]), *forces)
 
 
 @each_force
@@ -75,18 +21,9 @@ def test_a_merged_body_feels_what_is_left_of_the_force(name: str) -> None:
 
     Both runs err by 1e-13 a step; the contact is told to 1e-14, and the places after it are as exact as that.
     """
-    before, after = FORCES[name]
-    out = falling(GRAVITY, before).run(TIMES, **HOW)
-    first = out.collisions.t[0]
-    met = falling(GRAVITY, before).run(TIMES[-1], **(HOW | {"collisions": "stop"})).final
+    out, met, left = contact(name)
+    first, there = out.collisions.t[0], [0, 2, 3]
     assert met.t0 == pytest.approx(first, rel=1e-14, abs=0)
-    mass, position, velocity = met.particles.mass, met.particles.position.copy(), met.particles.velocity.copy()
-    position[0], velocity[0] = (mass[:2] @ of[:2] / mass[:2].sum() for of in (position, velocity))
-    radius = [np.cbrt(0.5**3 + 0.3**3), 0.3, 0.2]
-    there = [0, 2, 3]
-    bodies = vv.Particles([6.0, 0.5, 0.2], position[there], velocity[there], radius=radius)
-    forces = [GRAVITY] if after is None else [GRAVITY, after]
-    left = vv.Scene(bodies, *forces, t0=met.t0)
     later = out.t > first
     assert later.sum() >= 2
     by_hand = left.run(out.t[later], **HOW)
@@ -109,11 +46,12 @@ def test_what_is_told_of_a_merged_scene_is_told_of_what_is_left(name: str) -> No
         np.testing.assert_allclose(getattr(again, column), getattr(out, column), rtol=1e-14, atol=1e-15)
     told = out.final.invariants()
     assert told.energy == pytest.approx(out.energy[-1], rel=1e-13, abs=0)
-    # The rate of change of the momentum, over a hundredth of the rows' spacing.
-    after = out.final.run(TIMES[-1] + 1e-4, **HOW)
-    assert not len(after.collisions)
-    rate = (after.velocity[-1] - out.velocity[-1]) / 1e-4
-    np.testing.assert_allclose(out.final.acceleration(), rate, rtol=2e-3, atol=1e-5)
+    # The slope of the velocities about the last row: h²/6 of their third derivatives, and rounding over h.
+    h = 1e-4
+    around = scene.run([0.0, TIMES[-1] - h, TIMES[-1] + h], **HOW)
+    assert around.collisions.t[-1] < TIMES[-1] - h
+    slope = (around.velocity[2] - around.velocity[1]) / (2.0 * h)
+    np.testing.assert_allclose(out.final.acceleration(), slope, rtol=1e-6, atol=1e-8)
 
 
 @each_force
@@ -125,10 +63,13 @@ def test_a_run_goes_on_from_mergers(name: str) -> None:
     assert len(half.collisions)
     final: vv.Scene = pickle.loads(pickle.dumps(half.final))
     on = final.run(TIMES[-1], **HOW)
-    np.testing.assert_allclose(on.position[-1], whole.position[-1], rtol=0, atol=1e-12)
+    for column in ("position", "velocity", "momentum", "angular_momentum"):
+        np.testing.assert_allclose(getattr(on, column)[-1], getattr(whole, column)[-1], rtol=0, atol=2e-12)
+    assert on.energy[-1] == pytest.approx(whole.energy[-1], rel=2e-13, abs=0)
     bounced = final.run(TIMES[-1], **(HOW | {"collisions": "bounce"}))
     if len(half.collisions) == len(whole.collisions):
         np.testing.assert_array_equal(bounced.position[-1], on.position[-1])
+        np.testing.assert_array_equal(bounced.velocity[-1], on.velocity[-1])
     with pytest.raises(vv.InvalidInput, match=r"run on with collisions=|no body in the place of"):
         # Without a word of what has merged, parts are bodies without mass in the place of others.
         vv.Scene(final.particles, vv.Coulomb(1.0, k=1.0), vv.Oblate(0, J2=0.1, radius=1.0, **OBLATE)).run(2.0)
@@ -157,14 +98,25 @@ def test_copies_merge_as_each_does_alone(threads: int, method: dict[str, Any]) -
 
 
 def test_opposite_charges_become_one_without() -> None:
-    """Two that fall on each other are a body without charge, which no field moves."""
+    """Two that fall on each other from rest are a body without charge, at rest where their center of mass has been.
+
+    The field moves each of them until then, and both together not at all. All their energy is gone: none is left of
+    that in the field, nor of that of each other.
+    """
     bodies = vv.Particles([1.0, 3.0], [[-1, 0, 0], [1, 0, 0]], radius=0.1)
     fields = (vv.Coulomb([2.0, -2.0], k=1.0), vv.UniformElectricField([0.0, 0.1, 0.0], [2.0, -2.0]))
-    out = vv.Scene(bodies, *fields).run([0.0, 3.0, 5.0], collisions="merge")
+    out = vv.Scene(bodies, *fields).run([0.0, 3.0, 5.0], collisions="merge", rtol=1e-13)
     assert out.collisions.survivor.tolist() == [1]
-    np.testing.assert_allclose(out.velocity[1], out.velocity[2], rtol=0, atol=0)
-    # The momentum of both was that of no force: the charges add to nothing.
-    np.testing.assert_allclose(out.momentum[2], 0.0, rtol=0, atol=1e-14)
+    met = vv.Scene(bodies, *fields).run(3.0, collisions="stop", rtol=1e-13).final
+    assert abs(met.particles.velocity[:, 1]).min() > 0.05
+    np.testing.assert_array_equal(out.velocity[1], out.velocity[2])
+    np.testing.assert_allclose(out.position[1:, 1], [[0.5, 0.0, 0.0]] * 2, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(out.velocity[1:, 1], 0.0, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(out.momentum, 0.0, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(out.energy, [-2.0, 0.0, 0.0], rtol=1e-15, atol=1e-15)
+    # What was lost is what falling brought: −4 (1/2 − 1/0.2), and the work of the field over the way between them.
+    work = 0.2 * (met.particles.position[0, 1] - met.particles.position[1, 1])
+    assert out.collisions.energy_lost[0] == pytest.approx(18.0 + work, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(
