@@ -58,6 +58,32 @@ fn degrees(graph: &Graph) -> Vec<f64> {
     degrees
 }
 
+/// Whether a Taylor series tells all of these expressions, wherever it is made: of sums, products, whole powers, sines and
+/// cosines, whose coefficients grow until a fast wave is seen, however weak. What is made of exp may be nothing in all of them.
+pub fn is_entire(graph: &Graph, roots: &[Id]) -> bool {
+    all_entire(graph, roots, |id| graph.dependence(id) > Dependence::Parameters)
+}
+
+/// The same of what the time enters in them.
+pub fn is_entire_in_time(graph: &Graph, roots: &[Id]) -> bool {
+    all_entire(graph, roots, |id| graph.any(&[id], |node| matches!(node, Node::Time)))
+}
+
+/// Whether every expression that changes is made of others in such a way.
+fn all_entire(graph: &Graph, roots: &[Id], changes: impl Fn(Id) -> bool) -> bool {
+    graph.reachable(roots).into_iter().all(|id| match *graph.node(id) {
+        Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) | Node::Time => true,
+        Node::Sum(..) | Node::Product(..) | Node::Call(Function::Sin | Function::Cos, _) => true,
+        Node::Quotient(_, below) => !changes(below),
+        Node::Power(base, exponent) => {
+            let exponent = f64::from_bits(exponent);
+            (exponent >= 0.0 && exponent.fract() == 0.0) || !changes(base)
+        }
+        Node::Call(_, argument) => !changes(argument),
+        Node::Angle(y, x) => !changes(y) && !changes(x),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,6 +131,25 @@ mod tests {
             graph.product(&[t, root])
         }));
         assert!(hides(|graph, x, _| graph.power(x, 6.0)));
+    }
+
+    #[test]
+    fn series_tell_all_of_polynomials_and_waves() {
+        let mut graph = Graph::default();
+        let (x, t) = (graph.variable(0), graph.time());
+        let both = |graph: &Graph, id: Id| (is_entire(graph, &[id]), is_entire_in_time(graph, &[id]));
+        let phase = graph.sum(0.0, &[(3.0, x), (-1e6, t)]);
+        let wave = graph.call(Function::Cos, phase);
+        let sixth = graph.power(x, 6.0);
+        let driven = graph.product(&[wave, sixth]);
+        assert_eq!(both(&graph, driven), (true, true));
+        // Of places there may be anything beside such drives.
+        let inverse = graph.power(x, -3.0);
+        let far = graph.product(&[wave, inverse]);
+        assert_eq!(both(&graph, far), (false, true));
+        for hides in [graph.call(Function::Exp, t), graph.power(t, 0.5), graph.power(phase, -1.0)] {
+            assert_eq!(both(&graph, hides), (false, false));
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
-use super::series::{Scale, Series};
+use super::series::{ONE, Scale, Series};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -122,7 +122,7 @@ impl Series<Lanes> for WaveSeries {
         self.power = if n == 0 { jet.unit * jet.unit } else { self.power * turn * jet.inverse[n].0 };
         self.a.resize(jet.len, Lanes::zero());
         kernel_tier(&self.quarters[n % 4], &jet.t, &mut self.a, true);
-        Lanes::pass(Scale { from: &self.a, factor: &self.power, into: a, first });
+        Lanes::pass(Scale { from: &self.a, factors: [&self.power, &ONE], into: a, first });
         Ok(())
     }
 }

@@ -65,4 +65,16 @@ pub trait Following: Send {
         a: &mut [Lanes],
         first: bool,
     ) -> Result<()>;
+
+    /// Expands a motion under this force alone.
+    ///
+    /// # Errors
+    /// Those of the library itself.
+    fn expand(&mut self, massive: MassiveSeries<'_>, jet: &mut Jet<Lanes>, a: &mut [Lanes]) -> Result<()> {
+        for n in 0..jet.order {
+            self.coefficient(massive, (n, &*jet), a, true)?;
+            jet.raise(n, a);
+        }
+        Ok(())
+    }
 }

@@ -3,7 +3,7 @@
 use super::{Dynamics, Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::element::{Element, Pass, View};
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::parallel::Ticker;
@@ -123,19 +123,20 @@ impl Series<Lanes> for LinearSeries {
         };
         self.v.resize(jet.len, Lanes::zero());
         self.a.resize(jet.len, Lanes::zero());
-        let per_unit = Lanes::one() / jet.unit;
-        Lanes::pass(Scale { from: jet.velocity(n), factor: &per_unit, into: &mut self.v, first: true });
+        let (per_unit, by_unit) = ([&jet.per_unit, &ONE], [&jet.unit, &jet.unit]);
+        Lanes::pass(Scale { from: jet.velocity(n), factors: per_unit, into: &mut self.v, first: true });
         kernel.apply(&Phase { t: &jet.t, q: jet.position(n), v: &self.v }, &mut self.a, true, ticker)?;
-        let square = jet.unit * jet.unit;
-        Lanes::pass(Scale { from: &self.a, factor: &square, into: a, first });
+        Lanes::pass(Scale { from: &self.a, factors: by_unit, into: a, first });
         Ok(())
     }
 }
 
-/// Numbers times a factor, written if `first`, else added.
+pub(super) const ONE: Lanes = Lanes([1.0; WIDTH]);
+
+/// Numbers times the product of two factors, written if `first`, else added.
 pub(super) struct Scale<'a> {
     pub(super) from: &'a [Lanes],
-    pub(super) factor: &'a Lanes,
+    pub(super) factors: [&'a Lanes; 2],
     pub(super) into: &'a mut [Lanes],
     pub(super) first: bool,
 }
@@ -144,7 +145,7 @@ impl Pass<Lanes> for Scale<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let factor = V::load(*self.factor);
+        let factor = V::load(*self.factors[0]) * V::load(*self.factors[1]);
         for (into, &from) in V::view_mut(self.into).iter_mut().zip(V::view(self.from)) {
             let term = from * factor;
             *into = if self.first { term } else { *into + term };

@@ -115,6 +115,9 @@ impl ForceTerm for Springs {
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
     }
+    fn series_in_every_lane(&self) -> bool {
+        true
+    }
     fn has_series(&self) -> bool {
         self.springs.iter().all(|spring| spring.length == 0.0)
     }

@@ -159,6 +159,11 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         false
     }
 
+    /// Whether its series has lane by lane what its kernel has.
+    fn series_in_every_lane(&self) -> bool {
+        false
+    }
+
     /// What massive bodies do by it to massless ones that move through their steps, of a force that couples all pairs; if
     /// there is nothing of the kind, they are integrated together.
     fn following(&self, _: &Leaders<'_>) -> Option<Box<dyn Following>> {
@@ -291,6 +296,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     }
     /// Whether it is a formula of places and times that is not known beforehand, nor what their last digits change in it.
     fn is_formula(&self) -> bool {
+        false
+    }
+    /// Whether a Taylor series tells all of such a formula, wherever it is made.
+    fn is_entire(&self) -> bool {
         false
     }
     /// What its kernel leaves out, and why.

@@ -87,6 +87,9 @@ impl ForceTerm for UniformElectricField {
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), None)
     }
+    fn series_in_every_lane(&self) -> bool {
+        true
+    }
     fn has_series(&self) -> bool {
         true
     }

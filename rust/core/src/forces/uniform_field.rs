@@ -52,6 +52,9 @@ impl ForceTerm for Uniform {
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), None)
     }
+    fn series_in_every_lane(&self) -> bool {
+        true
+    }
     fn has_series(&self) -> bool {
         true
     }

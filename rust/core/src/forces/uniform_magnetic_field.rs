@@ -101,6 +101,9 @@ impl ForceTerm for UniformMagneticField {
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
     }
+    fn series_in_every_lane(&self) -> bool {
+        true
+    }
     fn has_series(&self) -> bool {
         true
     }

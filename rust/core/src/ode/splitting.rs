@@ -75,6 +75,25 @@ impl<S: Element> Force<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
+        self.up_to_last_kick(moves, (nodes, node), state, system, ticker)?;
+        if !self.last_idle {
+            nodes.acceleration((node, &moves.h), state, &mut self.acceleration, system, ticker)?;
+            self.fresh = true;
+            self.last_kick(moves, state);
+        }
+        Ok(())
+    }
+
+    /// All of a step that moves the coordinates.
+    #[inline(always)]
+    fn up_to_last_kick(
+        &mut self,
+        moves: &Moves<S>,
+        (nodes, node): (&Nodes, u64),
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
         for (index, (kick, drift, time)) in moves.pairs.iter().enumerate() {
             if self.idle[index] {
                 let (q, (v, _)) = state.halves_mut();
@@ -88,13 +107,14 @@ impl<S: Element> Force<S> {
             }
             self.fresh = false;
         }
-        if !self.last_idle {
-            nodes.acceleration((node, &moves.h), state, &mut self.acceleration, system, ticker)?;
-            self.fresh = true;
-            let (_, v) = state.halves_mut();
-            S::pass(Advance { y: v, k: &self.acceleration, step: &moves.last_kick });
-        }
         Ok(())
+    }
+
+    /// Kicks by the acceleration that was evaluated last.
+    #[inline(always)]
+    fn last_kick(&self, moves: &Moves<S>, state: &mut State<S>) {
+        let (_, v) = state.halves_mut();
+        S::pass(Advance { y: v, k: &self.acceleration, step: &moves.last_kick });
     }
 }
 
@@ -123,6 +143,30 @@ impl<S: Element> SplittingStep<S> {
         };
         Self { moves: Moves::new(table, h), force, nodes: Nodes::new(h, system), between: None, before: None }
     }
+
+    /// Takes a shorter step from a node; what is evaluated on it leaves no trace.
+    #[inline(always)]
+    fn aside(
+        &mut self,
+        node: u64,
+        past: f64,
+        step: impl FnOnce(&mut Force<S>, &Moves<S>, &Nodes) -> Result<()>,
+    ) -> Result<()> {
+        let Self { moves, force, nodes, between, before } = self;
+        let (shorter, at_node) =
+            between.get_or_insert_with(|| (Moves::new(moves.table, past), force.acceleration.clone()));
+        shorter.set(past);
+        at_node.copy_from_slice(&force.acceleration);
+        let fresh = force.fresh;
+        if let Some(before) = before.as_ref().filter(|before| before.node == node) {
+            force.acceleration.copy_from_slice(&before.acceleration);
+            force.fresh = before.fresh;
+        }
+        let outcome = step(force, shorter, nodes);
+        core::mem::swap(&mut force.acceleration, at_node);
+        force.fresh = fresh;
+        outcome
+    }
 }
 
 impl<S: Element> Stepper<S> for SplittingStep<S> {
@@ -143,9 +187,16 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
     ) -> Result<u64> {
         let steps = per_call(state.q().len(), at_most);
         if let Some(before) = &mut self.before {
+            // At the start, too, it is evaluated once for all that begins there.
+            let force = &mut self.force;
+            if !force.fresh && !force.idle[0] {
+                let time = &self.moves.pairs[0].2;
+                self.nodes.acceleration((node, time), state, &mut force.acceleration, system, ticker)?;
+                force.fresh = true;
+            }
             before.node = node;
-            before.acceleration.copy_from_slice(&self.force.acceleration);
-            before.fresh = self.force.fresh;
+            before.acceleration.copy_from_slice(&force.acceleration);
+            before.fresh = force.fresh;
         }
         for step in 0..steps {
             self.force.advance(&self.moves, (&self.nodes, node + step), state, system, ticker)?;
@@ -189,20 +240,25 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { moves, force, nodes, between, before } = self;
-        let (shorter, at_node) =
-            between.get_or_insert_with(|| (Moves::new(moves.table, past), force.acceleration.clone()));
-        shorter.set(past);
-        at_node.copy_from_slice(&force.acceleration);
-        let fresh = force.fresh;
-        if let Some(before) = before.as_ref().filter(|before| before.node == node) {
-            force.acceleration.copy_from_slice(&before.acceleration);
-            force.fresh = before.fresh;
-        }
-        let outcome = force.advance(shorter, (&*nodes, node), state, system, ticker);
-        // What was looked at leaves no trace.
-        core::mem::swap(&mut force.acceleration, at_node);
-        force.fresh = fresh;
-        outcome
+        self.aside(node, past, |force, shorter, nodes| {
+            force.advance(shorter, (nodes, node), state, system, ticker)
+        })
+    }
+
+    fn positions_between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.aside(node, past, |force, shorter, nodes| {
+            force.up_to_last_kick(shorter, (nodes, node), state, system, ticker)?;
+            if !force.last_idle {
+                force.last_kick(shorter, state);
+            }
+            Ok(())
+        })
     }
 }

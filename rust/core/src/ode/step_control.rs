@@ -5,7 +5,7 @@
 //! Step control: Hairer, Nørsett & Wanner, *Solving ODE I*, II.4.
 
 use crate::numerics::double_double::{DoubleDouble, two_sum};
-use crate::numerics::element::{Element, View};
+use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::power_of_two;
@@ -118,6 +118,18 @@ impl<S: Real> Clock<S> {
         }
     }
 
+    /// Back from registers.
+    #[inline(always)]
+    fn store<V: View<S>>(&mut self, now: Clock<V>) {
+        *self = Self {
+            elapsed: now.elapsed.store(),
+            error: now.error.store(),
+            h: now.h.store(),
+            end: now.end.store(),
+            rejected: V::mask_in_memory(now.rejected),
+        };
+    }
+
     /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
     #[inline(always)]
     pub(super) fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
@@ -129,7 +141,8 @@ impl<S: Real> Clock<S> {
 
     /// Moves on by a step that has taken so long (and what that leaves out), to the end at most; `forward` has the sign of time.
     /// A step that time does not feel, or that goes back, is none.
-    pub(super) fn pass(&mut self, running: S::Mask, (taken, rest): (S, S), forward: S) -> Settled<S> {
+    #[inline(always)]
+    fn pass(&mut self, running: S::Mask, (taken, rest): (S, S), forward: S) -> Settled<S> {
         let remaining = (self.end - self.elapsed) - self.error;
         let from = self.elapsed;
         let (elapsed, error) = two_sum(self.elapsed, (self.error + rest) + taken);
@@ -172,6 +185,40 @@ impl<S: Real> Clock<S> {
         let smallest = (S::splat(SMALLEST_STEP) * self.elapsed.abs()).max(S::splat(f64::MIN_POSITIVE));
         let stuck = self.h.abs().less_equal(smallest).and(running).and(finished.not());
         Settled { accepted, finished, stuck, from, h }
+    }
+}
+
+impl<S: Real> Settled<S> {
+    #[inline(always)]
+    fn stored<V: View<S>>(of: &Settled<V>) -> Self {
+        Self {
+            accepted: V::mask_in_memory(of.accepted),
+            finished: V::mask_in_memory(of.finished),
+            stuck: V::mask_in_memory(of.stuck),
+            from: of.from.store(),
+            h: of.h.store(),
+        }
+    }
+}
+
+/// Moves a clock on by a step that has taken so long.
+pub(super) struct Passing<'a, S: Real> {
+    pub(super) clock: &'a mut Clock<S>,
+    pub(super) running: S::Mask,
+    /// How long, and what that leaves out.
+    pub(super) taken: &'a (S, S),
+    /// With the sign of time.
+    pub(super) forward: &'a S,
+}
+
+impl<S: Element> Pass<S> for Passing<'_, S> {
+    type Output = Settled<S>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Settled<S> {
+        let mut now = self.clock.load::<V>();
+        let settled = now.pass(V::mask(self.running), V::scaled(self.taken), V::load(*self.forward));
+        self.clock.store(now);
+        Settled::stored(&settled)
     }
 }
 
@@ -275,11 +322,9 @@ fn settle_lanes<V: Vector8 + InverseCube>(
 ) -> Settled<Lanes> {
     let mut now = clock.load::<V>();
     let rule = Rule { power: rule.power, max_step: Vector8::load(rule.max_step), limits: rule.limits };
-    let Settled { accepted, finished, stuck, from, h } = now.settle(running, Vector8::load(size2), &rule);
-    let Clock { elapsed, error, h: next, end, rejected } = now;
-    *clock =
-        Clock { elapsed: elapsed.store(), error: error.store(), h: next.store(), end: end.store(), rejected };
-    Settled { accepted, finished, stuck, from: from.store(), h: h.store() }
+    let settled = now.settle(running, Vector8::load(size2), &rule);
+    clock.store(now);
+    Settled::stored(&settled)
 }
 
 tiered! {

@@ -83,6 +83,22 @@ pub trait Stepper<S: Element>: Send {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
+
+    /// As [`between`](Self::between), for who wants the coordinates: their velocities may be those that the forces before the
+    /// end of the step make, where those at its end would take an evaluation.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn positions_between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.between(node, past, state, system, ticker)
+    }
 }
 
 /// Numbers that the steps of one call change, about: some milliseconds at most between two looks at whether to stop.
@@ -258,6 +274,39 @@ pub(super) mod tests {
                 };
                 assert_eq!(bits(&state), bits(&resumed), "{} from node {held_at}", method.name);
             }
+        }
+    }
+
+    /// Positions inside a step are those of a shadow step; who kicks last needs no force for them, and nobody leaves a trace.
+    #[test]
+    fn positions_between_nodes_are_those_of_shadow_steps() {
+        let control = Control::default();
+        let mut ticker = Ticker::quiet(&control);
+        let start = State::new(&[0.3], &[1.1]);
+        for method in METHODS.iter().filter(|method| !method.adaptive()) {
+            let pendulum = &mut Pendulum::new(f64::INFINITY);
+            let (mut plain, mut looking) =
+                [0; 2].map(|_| stepper(method, 0.07, pendulum, &start).unwrap()).into();
+            let (mut state, mut other) = (start.clone(), start.clone());
+            looking.look_back();
+            for node in 0..20 {
+                let before = other.clone();
+                let _ = plain.step(node, 1, &mut state, pendulum, &mut ticker).unwrap();
+                let _ = looking.step(node, 1, &mut other, pendulum, &mut ticker).unwrap();
+                looking.settle(&mut other);
+                let (mut whole, mut places) = (before.clone(), before);
+                let begun = pendulum.evaluations;
+                looking.positions_between(node, 0.03, &mut places, pendulum, &mut ticker).unwrap();
+                let taken = pendulum.evaluations - begun;
+                looking.between(node, 0.03, &mut whole, pendulum, &mut ticker).unwrap();
+                assert_eq!(whole.q(), places.q(), "{} at node {node}", method.name);
+                // Of the velocity an impulse of a part of the step is known otherwise.
+                assert!((whole.v()[0] - places.v()[0]).abs() < 0.03 * 0.07, "{}", method.name);
+                assert!(taken <= pendulum.evaluations - begun - taken, "{}", method.name);
+                assert!(taken == 0 || method.name != "leapfrog");
+            }
+            plain.settle(&mut state);
+            assert_eq!(state.all(), other.all(), "{} leaves a trace", method.name);
         }
     }
 }

@@ -10,14 +10,16 @@
 
 use super::Splitting;
 use super::norm::Norm;
+use super::passes::transformed::{Carry, Drift, Lasting, Shares};
 use super::passes::updates::{Advance, Finite, Product};
 use super::state::State;
-use super::step_control::{Clock, Controlled, Settled};
+use super::step_control::{Clock, Controlled, Passing, Settled};
 use super::system::System;
 use super::transformation::{Monitor, Transformation};
 use super::trial::{Cost, Trial};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
+use crate::numerics::element::Scaled;
 use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;
 
@@ -81,6 +83,14 @@ struct Moves {
 }
 
 impl Moves {
+    /// What a drift lasts by: W is the sum of the last two and, of the energies, the kinetic one before them.
+    fn kinetic<S: Controlled>(&self, state: &State<S>, system: &mut dyn System<S>) -> Result<S> {
+        Ok(match self.by {
+            Transformation::PotentialEnergy => monitor(system)?.kinetic_energy(state.v()),
+            Transformation::Distance => S::zero(),
+        })
+    }
+
     /// W, by which a drift lasts.
     fn weight<S: Controlled>(
         &self,
@@ -89,10 +99,7 @@ impl Moves {
         system: &mut dyn System<S>,
     ) -> Result<S> {
         let (weight, rest) = beside.weight;
-        Ok(match self.by {
-            Transformation::PotentialEnergy => monitor(system)?.kinetic_energy(state.v()) + (weight + rest),
-            Transformation::Distance => weight + rest,
-        })
+        Ok(self.kinetic(state, system)? + (weight + rest))
     }
 
     /// What a kick needs at those coordinates.
@@ -118,20 +125,25 @@ impl Moves {
         if self.together { product.sum_of_lanes() } else { product }
     }
 
-    fn kick<S: Controlled>(&self, share: (S, S), time: Time, state: &mut State<S>, beside: &mut Beside<S>) {
-        let step = match time {
-            Time::Transformed => ((share.0 + share.1) / beside.omega, S::zero()),
-            Time::Itself => share,
-        };
+    fn kick<S: Controlled>(
+        &self,
+        share: &Scaled<S>,
+        time: Time,
+        state: &mut State<S>,
+        beside: &mut Beside<S>,
+    ) {
         let carried = time == Time::Transformed && self.by == Transformation::Distance;
         let before = if carried { self.along(state.v(), beside) } else { S::zero() };
         let (_, v) = state.halves_mut();
-        S::pass(Advance { y: v, k: &beside.acceleration, step: &step });
+        if time == Time::Itself {
+            return S::pass(Advance { y: v, k: &beside.acceleration, step: share });
+        }
+        let nothing = S::zero();
+        let step = S::pass(Lasting { share, over: [&beside.omega, &nothing, &nothing] });
+        S::pass(Advance { y: v, k: &beside.acceleration, step: &(step, nothing) });
         if carried {
-            // Velocities change linearly in it: the mean of those at both ends is exact.
-            let change = step.0 * S::splat(0.5) * (before + self.along(state.v(), beside));
-            let (weight, rest) = beside.weight;
-            beside.weight = two_sum(weight, rest + change);
+            let after = self.along(state.v(), beside);
+            S::pass(Carry { step: &step, rates: [&before, &after], weight: &mut beside.weight });
         }
     }
 
@@ -140,29 +152,32 @@ impl Moves {
         &self,
         (h, time): (S, Time),
         elapsed: S,
-        (state, beside): (&mut State<S>, &mut Beside<S>),
+        (state, beside, shares): (&mut State<S>, &mut Beside<S>, &mut Shares<S>),
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<(S, S)> {
         let mut taken = (S::zero(), S::zero());
-        for &(kick, drift) in &self.pairs {
-            if kick.to_f64() != 0.0 {
+        shares.find(&h, &self.pairs);
+        for ((kick, drift), (own_kick, own_drift)) in shares.pairs.iter().zip(&self.pairs) {
+            if own_kick.to_f64() != 0.0 {
                 if !beside.fresh {
                     self.look(elapsed + taken.0, time, state, beside, system, ticker)?;
                 }
-                self.kick(h.scaled_by(kick), time, state, beside);
+                self.kick(kick, time, state, beside);
             }
-            if drift.to_f64() == 0.0 {
+            if own_drift.to_f64() == 0.0 {
                 continue;
             }
-            let share = h.scaled_by(drift);
-            let step = match time {
-                Time::Transformed => ((share.0 + share.1) / self.weight(state, beside, system)?, S::zero()),
-                Time::Itself => share,
-            };
-            let (q, (v, _)) = state.halves_mut();
-            S::pass(Advance { y: q, k: v, step: &step });
-            taken = two_sum(taken.0, taken.1 + step.0);
+            if time == Time::Itself {
+                let (q, (v, _)) = state.halves_mut();
+                S::pass(Advance { y: q, k: v, step: drift });
+                taken = two_sum(taken.0, taken.1 + drift.0);
+            } else {
+                let kinetic = self.kinetic(state, system)?;
+                let lasting = Lasting { share: drift, over: [&kinetic, &beside.weight.0, &beside.weight.1] };
+                let (q, (v, _)) = state.halves_mut();
+                S::pass(Drift { lasting, q, v, taken: &mut taken });
+            }
             beside.fresh = false;
         }
         Ok(taken)
@@ -181,6 +196,8 @@ pub struct Transformed<S> {
     dt: S,
     /// The step in the other time.
     step: S,
+    /// The shares of kicks and drifts in it, and in a part of it.
+    shares: [Shares<S>; 2],
     /// Of the state, of the next one and of one in between.
     beside: Beside<S>,
     next: (State<S>, Beside<S>),
@@ -209,6 +226,7 @@ impl<S: Controlled> Transformed<S> {
         let beside =
             Beside { weight: (zero, zero), fresh: false, omega: zero, acceleration: zeros, gradient };
         let pairs = kicks_and_drifts(table);
+        let shares = Shares::new(pairs.len());
         let acts = |(kick, _): &(DoubleDouble, DoubleDouble)| kick.to_f64() != 0.0;
         let ends = pairs.last().is_some_and(|pair| acts(pair) && pair.1.to_f64() == 0.0);
         let shared = ends && pairs.first().is_some_and(acts);
@@ -217,6 +235,7 @@ impl<S: Controlled> Transformed<S> {
             moves: Moves { pairs, by, together },
             dt,
             step: zero,
+            shares: [shares.clone(), shares],
             next: (state.clone(), beside.clone()),
             between: (state.clone(), beside.clone()),
             beside,
@@ -237,6 +256,7 @@ impl<S: Controlled> Transformed<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let Self { moves, step, beside, between: (into, into_beside), length, weights, .. } = self;
+        let [_, shares] = &mut self.shares;
         let one = S::one();
         // The share of the step in the other time as a cubic of that in time, by the rates at both ends.
         let theta = past / *length;
@@ -248,12 +268,13 @@ impl<S: Controlled> Transformed<S> {
             into.copy_from(state);
             into_beside.copy_from(beside);
             let h = (share * *step, Time::Transformed);
-            let (taken, rest) = moves.advance(h, elapsed, (&mut *into, &mut *into_beside), system, ticker)?;
+            let now = (&mut *into, &mut *into_beside, &mut *shares);
+            let (taken, rest) = moves.advance(h, elapsed, now, system, ticker)?;
             left = (past - taken) - rest;
             share += left * moves.weight(into, into_beside, system)? / *step;
         }
         let from = elapsed + (past - left);
-        let _left = moves.advance((left, Time::Itself), from, (into, into_beside), system, ticker)?;
+        let _left = moves.advance((left, Time::Itself), from, (into, into_beside, shares), system, ticker)?;
         Ok(())
     }
 }
@@ -304,12 +325,12 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         next_beside.copy_from(beside);
         let first = moves.weight(state, beside, system)?;
         let h = S::select(running, *step, S::zero());
-        let taken =
-            moves.advance((h, Time::Transformed), from, (&mut *next, &mut *next_beside), system, ticker)?;
+        let now = (&mut *next, &mut *next_beside, &mut self.shares[0]);
+        let taken = moves.advance((h, Time::Transformed), from, now, system, ticker)?;
         self.weights = [first, moves.weight(next, next_beside, system)?];
         self.length = taken.0 + taken.1;
         let before = *clock;
-        let mut outcome = clock.pass(running, taken, self.dt);
+        let mut outcome = S::pass(Passing { clock, running, taken: &taken, forward: &self.dt });
         if outcome.finished.any() {
             self.meet(outcome.h, from, state, system, ticker)?;
             self.next.0.take_over(&self.between.0, outcome.finished);

@@ -41,7 +41,7 @@ use crate::forces::together::Energy;
 use crate::ode::transformation::Transformation;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
-use kinds::kinds_of_forces;
+use kinds::{Looks, kinds_of_forces};
 use own::{Own, about, acting};
 use quiet::Quiet;
 use std::sync::Arc;
@@ -289,10 +289,13 @@ impl Plan {
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
-            // Series and what a transformation watches are made of the forces on one copy.
             kinds: kinds_of_forces(
                 scene,
-                transformed.is_some() || matches!(method.scheme, Scheme::Taylor(_)),
+                match method.scheme {
+                    _ if transformed.is_some() => Looks::Transformation,
+                    Scheme::Taylor(_) => Looks::Series,
+                    _ => Looks::Nobody,
+                },
             ),
             joined,
             turning,

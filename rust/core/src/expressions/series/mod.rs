@@ -152,7 +152,7 @@ impl<S: Coefficient> Expansion<S> {
     }
 
     /// Sets the coefficient of an order of a number of the state, or of the time, which comes after them.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, index: usize, order: usize, value: S) {
         self.numbers[self.of.inputs[index] + order] = value;
     }
@@ -165,7 +165,7 @@ impl<S: Coefficient> Expansion<S> {
     }
 
     /// The coefficient of an order of a result.
-    #[inline]
+    #[inline(always)]
     pub fn output(&self, index: usize, order: usize) -> S {
         let place = self.of.outputs[index];
         // Constants have no further coefficient.
@@ -173,6 +173,7 @@ impl<S: Coefficient> Expansion<S> {
     }
 
     /// The index of the time among the inputs.
+    #[inline(always)]
     pub fn time(&self) -> usize {
         self.of.variables
     }

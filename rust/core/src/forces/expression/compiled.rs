@@ -52,13 +52,16 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         force: compiled(&force)?,
         // A drive that begins more gently than any power that a series has would not be seen.
         series: match Series::leaps(&graph, &force) {
-            None if !needs.time => Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?)),
+            None if narrow::is_entire_in_time(&graph, &force) => {
+                Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?))
+            }
             _ => None,
         },
         potential: if potential { Some(compiled(&roots)?) } else { None },
         parameters: parameters.to_vec(),
         needs,
         may_hide: narrow::may_hide(&graph, &force),
+        is_entire: narrow::is_entire(&graph, &force),
         made_from: vec![],
     })
 }

@@ -188,6 +188,59 @@ impl Expanded {
     }
 }
 
+#[inline(always)]
+fn coefficient_body<V: Vector8 + Scalar>(
+    force: &mut Expanded,
+    n: usize,
+    jet: &Jet<Lanes>,
+    a: &mut [Lanes],
+    first: bool,
+) {
+    let Expanded { way, rows, needs } = force;
+    let count = way.shape.rows;
+    let unit = V::load(jet.unit);
+    let (per_unit, square) = (V::splat(way.velocity) / unit, unit * unit);
+    let time = match n {
+        0 => V::splat(way.time).multiply_add(V::load(jet.t), V::splat(way.t0)),
+        1 => V::splat(way.time) * unit,
+        _ => V::zero(),
+    };
+    let (q, v, a) = (V::view(jet.position(n)), V::view(jet.velocity(n)), V::view_mut(a));
+    for (row, expansion) in rows.iter_mut().enumerate() {
+        let (mut place, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
+        for c in 0..way.shape.components {
+            let origin = V::splat(if n == 0 { -way.origin[c] } else { 0.0 });
+            place[c] = V::splat(way.place).multiply_add(q[c * count + row], origin);
+            if needs.velocity {
+                speed[c] = per_unit * v[c * count + row];
+            }
+        }
+        let (place, speed) = (turned(&way.axes, place, false), turned(&way.axes, speed, false));
+        for c in 0..3 {
+            expansion.set(c, n, place[c].store());
+            expansion.set(3 + c, n, speed[c].store());
+        }
+        expansion.set(expansion.time(), n, time.store());
+        expansion.expand(n);
+        let mut force = [V::zero(); 3];
+        for c in 0..3 {
+            force[c] = V::load(expansion.output(c, n));
+        }
+        let force = turned(&way.axes, force, true);
+        let factor = V::load(way.force[row]);
+        let none = factor.less_equal(V::zero());
+        for c in 0..way.shape.components {
+            let term = V::select(none, V::zero(), force[c] * factor * square);
+            let a = &mut a[c * count + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn coefficient_tier[][](force: &mut Expanded, n: usize, jet: &Jet<Lanes>, a: &mut [Lanes], first: bool) = coefficient_body;
+}
+
 impl Series<Lanes> for Expanded {
     fn coefficient(
         &mut self,
@@ -197,39 +250,7 @@ impl Series<Lanes> for Expanded {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { way, rows, needs } = self;
-        let count = way.shape.rows;
-        let per_unit = Lanes::splat(way.velocity) / jet.unit;
-        let square = jet.unit * jet.unit;
-        let time = match n {
-            0 => Lanes::splat(way.time).multiply_add(jet.t, Lanes::splat(way.t0)),
-            1 => Lanes::splat(way.time) * jet.unit,
-            _ => Lanes::zero(),
-        };
-        for (row, expansion) in rows.iter_mut().enumerate() {
-            let (mut place, mut speed) = ([Lanes::zero(); 3], [Lanes::zero(); 3]);
-            for c in 0..way.shape.components {
-                let origin = Lanes::splat(if n == 0 { -way.origin[c] } else { 0.0 });
-                place[c] = Lanes::splat(way.place).multiply_add(jet.position(n)[c * count + row], origin);
-                if needs.velocity {
-                    speed[c] = per_unit * jet.velocity(n)[c * count + row];
-                }
-            }
-            let variables =
-                turned(&way.axes, place, false).into_iter().chain(turned(&way.axes, speed, false));
-            for (index, value) in variables.enumerate() {
-                expansion.set(index, n, value);
-            }
-            expansion.set(expansion.time(), n, time);
-            expansion.expand(n);
-            let force = turned(&way.axes, [0, 1, 2].map(|c| expansion.output(c, n)), true);
-            let none = way.force[row].less_equal(Lanes::zero());
-            for c in 0..way.shape.components {
-                let term = Lanes::select(none, Lanes::zero(), force[c] * way.force[row] * square);
-                let a = &mut a[c * count + row];
-                *a = if first { term } else { *a + term };
-            }
-        }
+        coefficient_tier(self, n, jet, a, first);
         Ok(())
     }
 

@@ -143,8 +143,9 @@ struct Expressions {
     potential: Option<Arc<Code>>,
     parameters: Vec<f64>,
     needs: Needs,
-    /// Whether there may be more in them than a step sees.
+    /// Whether there may be more in them than a step sees, and whether series see all.
     may_hide: bool,
+    is_entire: bool,
     /// What they were made from, but for the parameters.
     made_from: Vec<u64>,
 }
@@ -314,6 +315,12 @@ impl ForceTerm for ExpressionForce {
         self.expressions.may_hide
     }
     fn is_formula(&self) -> bool {
+        true
+    }
+    fn is_entire(&self) -> bool {
+        self.expressions.is_entire
+    }
+    fn series_in_every_lane(&self) -> bool {
         true
     }
     fn strongest(

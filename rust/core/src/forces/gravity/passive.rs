@@ -118,12 +118,25 @@ impl Following for Leading {
         a: &mut [Lanes],
         first: bool,
     ) -> Result<()> {
-        let Some(series) = &mut self.series else {
-            return Err(Error::Internal("gravity without its series".to_owned()));
-        };
-        series.coefficient(passive::Massive { strength: &self.strength, places, rests }, of, a, first);
+        let massive = passive::Massive { strength: &self.strength, places, rests };
+        self.series.as_mut().ok_or_else(without_series)?.coefficient(massive, of, a, first);
         Ok(())
     }
+
+    fn expand(
+        &mut self,
+        MassiveSeries { places, rests }: MassiveSeries<'_>,
+        jet: &mut Jet<Lanes>,
+        a: &mut [Lanes],
+    ) -> Result<()> {
+        let massive = passive::Massive { strength: &self.strength, places, rests };
+        self.series.as_mut().ok_or_else(without_series)?.expand(massive, jet, a);
+        Ok(())
+    }
+}
+
+fn without_series() -> Error {
+    Error::Internal("gravity without its series".to_owned())
 }
 
 /// The pull on one massless body in each lane of massive ones at given places: written into `a` if `first`, else added.

@@ -89,34 +89,53 @@ impl<L: WrittenLaw> Following for Leading<L> {
         if first {
             a.fill(Lanes::zero());
         }
-        let (numbers, components) = (massive.rests.len(), jet.len);
+        if self.leaders.iter().any(|leader| leader.pair.is_none()) {
+            return Err(Error::Internal("sources without their series".to_owned()));
+        }
+        Lanes::pass(Coefficient { leaders: &mut self.leaders, massive, n, jet, a });
+        Ok(())
+    }
+}
+
+struct Coefficient<'a> {
+    leaders: &'a mut [Leader],
+    massive: MassiveSeries<'a>,
+    n: usize,
+    jet: &'a Jet<Lanes>,
+    a: &'a mut [Lanes],
+}
+
+impl Pass<Lanes> for Coefficient<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) {
+        let Self { leaders, massive, n, jet, a } = self;
+        let (places, rests) = (V::view(massive.places), V::view(massive.rests));
+        let (q, v, of_q) = (V::view(jet.position(n)), V::view(jet.velocity(n)), V::view(&jet.rests[0]));
+        let (numbers, components, a) = (rests.len(), jet.len, V::view_mut(a));
         let bodies = numbers / components;
-        let square = jet.unit * jet.unit;
-        for leader in &mut self.leaders {
-            let Some(pair) = &mut leader.pair else {
-                return Err(Error::Internal("sources without their series".to_owned()));
-            };
+        let (unit, per_unit) = (V::load(jet.unit), V::load(jet.per_unit));
+        let order = V::splat((n + 1) as f64);
+        for leader in leaders {
+            let Some(pair) = &mut leader.pair else { continue };
             for c in 0..3 {
-                let (mut d, mut velocity) = (Lanes::zero(), Lanes::zero());
+                let (mut d, mut velocity) = (V::zero(), V::zero());
                 if c < components {
                     let at = c * bodies + leader.slot;
-                    d = jet.position(n)[c] - massive.places[n * numbers + at];
+                    d = q[c] - places[n * numbers + at];
                     if n == 0 {
-                        d += jet.rests[0][c] - massive.rests[at];
+                        d += of_q[c] - rests[at];
                     }
-                    let order = Lanes::splat((n + 1) as f64);
-                    let own = order * massive.places[(n + 1) * numbers + at];
-                    velocity = (jet.velocity(n)[c] - own) * jet.per_unit;
+                    velocity = (v[c] - order * places[(n + 1) * numbers + at]) * per_unit;
                 }
-                pair.set(c, n, d);
-                pair.set(3 + c, n, velocity);
+                pair.set(c, n, d.store());
+                pair.set(3 + c, n, velocity.store());
             }
             pair.expand(n);
             for c in 0..components {
-                a[c] += pair.output(c, n) * square;
+                a[c] += V::load(pair.output(c, n)) * (unit * unit);
             }
         }
-        Ok(())
     }
 }
 

@@ -11,10 +11,11 @@ use crate::expressions::series::{Expansion, Series as Recurrences};
 use crate::forces::context::Context;
 use crate::forces::series::Series;
 use crate::numerics::element::Shape;
-use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::parallel::Ticker;
+use crate::tiered;
 use std::sync::Arc;
 
 /// What the recurrences of a law are of: three coordinates, then three velocities.
@@ -76,6 +77,7 @@ struct SourceSeries<L> {
 }
 
 /// A coefficient of the places and velocities of bodies.
+#[derive(Clone, Copy)]
 struct Order<'a> {
     n: usize,
     jet: &'a Jet<Lanes>,
@@ -84,100 +86,116 @@ struct Order<'a> {
 
 impl Order<'_> {
     /// Of a row.
-    fn row(&self, row: usize) -> [Lanes; 6] {
+    #[inline(always)]
+    fn row<V: Vector8>(&self, row: usize) -> [V; 6] {
         let rows = self.jet.len / self.axes;
-        let per_unit = Lanes::one() / self.jet.unit;
-        let mut found = [Lanes::zero(); 6];
+        let per_unit = V::load(self.jet.per_unit);
+        let (q, v) = (V::view(self.jet.position(self.n)), V::view(self.jet.velocity(self.n)));
+        let mut found = [V::zero(); 6];
         for c in 0..self.axes {
-            found[c] = self.jet.position(self.n)[c * rows + row];
-            found[3 + c] = self.jet.velocity(self.n)[c * rows + row] * per_unit;
+            found[c] = q[c * rows + row];
+            found[3 + c] = v[c * rows + row] * per_unit;
         }
         found
     }
 
     /// What the source gives to a row of bodies in the lanes of a mask; beside them the pair is one apart.
-    fn pull(
+    #[inline(always)]
+    fn pull<V: Vector8>(
         &self,
         pair: &mut Expansion<Lanes>,
-        bodies: [Lanes; 6],
-        source: [Lanes; 6],
+        bodies: [V; 6],
+        source: [V; 6],
         there: Bits,
-    ) -> [Lanes; 3] {
-        for (index, (body, own)) in bodies.into_iter().zip(source).enumerate() {
-            let apart = if self.n == 0 && index == 0 { Lanes::one() } else { Lanes::zero() };
-            pair.set(index, self.n, Lanes::select(there, body - own, apart));
+    ) -> [V; 3] {
+        for index in 0..6 {
+            let apart = if self.n == 0 && index == 0 { V::one() } else { V::zero() };
+            let between = V::select(there, bodies[index] - source[index], apart);
+            pair.set(index, self.n, between.store());
         }
         pair.expand(self.n);
-        let square = self.jet.unit * self.jet.unit;
-        [0, 1, 2].map(|c| Lanes::select(there, pair.output(c, self.n) * square, Lanes::zero()))
+        let unit = V::load(self.jet.unit);
+        let mut pull = [V::zero(); 3];
+        for c in 0..3 {
+            let own = V::load(pair.output(c, self.n)) * (unit * unit);
+            pull[c] = V::select(there, own, V::zero());
+        }
+        pull
     }
 }
 
 /// Eight numbers, in the order of all such sums.
+#[inline(always)]
 fn sum_of_eight<T: Copy + core::ops::Add<Output = T>>(p: [T; WIDTH]) -> T {
     ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]))
 }
 
-impl<L: WrittenLaw> SourceSeries<L> {
-    /// Bodies of one system in lanes.
-    fn packed(&mut self, order: &Order<'_>, a: &mut [Lanes]) {
-        let Self { kernel, pairs, axes } = self;
-        let rows = kernel.shape.rows;
-        for (source, pairs) in kernel.sources.iter().zip(pairs) {
-            let (own, lane) = source.place;
-            let place = order.row(own).map(|x| Lanes::splat(x.0[lane]));
-            let mut sum = [Lanes::zero(); 3];
-            for (row, pair) in pairs.iter_mut().enumerate() {
-                let term = order.pull(pair, order.row(row), place, source.others[row]);
-                for c in 0..*axes {
-                    a[c * rows + row] += term[c];
-                    if row < kernel.active.div_ceil(WIDTH) {
-                        sum[c] += Lanes::splat(sum_of_eight((source.shares[row] * term[c]).0));
+/// Bodies of one system in lanes.
+#[inline(always)]
+fn packed<V: Vector8, L: WrittenLaw>(series: &mut SourceSeries<L>, order: Order<'_>, a: &mut [Lanes]) {
+    let SourceSeries { kernel, pairs, axes } = series;
+    let (rows, a) = (kernel.shape.rows, V::view_mut(a));
+    for (source, pairs) in kernel.sources.iter().zip(pairs) {
+        let (own, lane) = source.place;
+        let mut place = order.row::<V>(own);
+        for number in &mut place {
+            *number = V::splat(number.store().0[lane]);
+        }
+        let mut sum = [V::zero(); 3];
+        for (row, pair) in pairs.iter_mut().enumerate() {
+            let term = order.pull(pair, order.row::<V>(row), place, source.others[row]);
+            for c in 0..*axes {
+                a[c * rows + row] += term[c];
+                if row < kernel.active.div_ceil(WIDTH) {
+                    sum[c] += V::splat(sum_of_eight((V::load(source.shares[row]) * term[c]).store().0));
+                }
+            }
+        }
+        for c in 0..*axes {
+            a[c * rows + own] += V::select(source.itself, sum[c], V::zero());
+        }
+    }
+}
+
+/// Systems in lanes, a row for each body.
+#[inline(always)]
+fn batched<V: Vector8, L: WrittenLaw>(series: &mut SourceSeries<L>, order: Order<'_>, a: &mut [Lanes]) {
+    let SourceSeries { kernel, pairs, axes } = series;
+    let (Shape { rows, .. }, a) = (kernel.shape, V::view_mut(a));
+    let bodies = rows / kernel.blocks.max(1);
+    for block in 0..kernel.blocks {
+        for (source, pairs) in kernel.sources.iter().zip(&mut *pairs) {
+            let own = block * bodies + source.place.0;
+            let place = order.row::<V>(own);
+            let mut sum = [V::zero(); 3];
+            for first in (0..bodies).step_by(WIDTH) {
+                let mut parts = [[V::zero(); WIDTH]; 3];
+                for slot in (first..bodies.min(first + WIDTH)).filter(|&slot| block * bodies + slot != own) {
+                    let at = block * bodies + slot;
+                    let term = order.pull(&mut pairs[at], order.row::<V>(at), place, Bits(0xff));
+                    for c in 0..*axes {
+                        a[c * rows + at] += term[c];
+                        if slot < kernel.active {
+                            parts[c][slot - first] = V::load(source.shares[at]) * term[c];
+                        }
+                    }
+                }
+                if first < kernel.active {
+                    for c in 0..*axes {
+                        sum[c] += sum_of_eight(parts[c]);
                     }
                 }
             }
             for c in 0..*axes {
-                a[c * rows + own] += Lanes::select(source.itself, sum[c], Lanes::zero());
+                a[c * rows + own] += sum[c];
             }
         }
     }
+}
 
-    /// Systems in lanes, a row for each body.
-    fn batched(&mut self, order: &Order<'_>, a: &mut [Lanes]) {
-        let Self { kernel, pairs, axes } = self;
-        let Shape { rows, .. } = kernel.shape;
-        let bodies = rows / kernel.blocks.max(1);
-        for block in 0..kernel.blocks {
-            for (source, pairs) in kernel.sources.iter().zip(&mut *pairs) {
-                let own = block * bodies + source.place.0;
-                let place = order.row(own);
-                let mut sum = [Lanes::zero(); 3];
-                for first in (0..bodies).step_by(WIDTH) {
-                    let mut parts = [[Lanes::zero(); WIDTH]; 3];
-                    for slot in
-                        (first..bodies.min(first + WIDTH)).filter(|&slot| block * bodies + slot != own)
-                    {
-                        let at = block * bodies + slot;
-                        let term = order.pull(&mut pairs[at], order.row(at), place, Bits(0xff));
-                        for c in 0..*axes {
-                            a[c * rows + at] += term[c];
-                            if slot < kernel.active {
-                                parts[c][slot - first] = source.shares[at] * term[c];
-                            }
-                        }
-                    }
-                    if first < kernel.active {
-                        for c in 0..*axes {
-                            sum[c] += sum_of_eight(parts[c]);
-                        }
-                    }
-                }
-                for c in 0..*axes {
-                    a[c * rows + own] += sum[c];
-                }
-            }
-        }
-    }
+tiered! {
+    fn packed_tier[L: WrittenLaw][L](series: &mut SourceSeries<L>, order: Order<'_>, a: &mut [Lanes]) = packed;
+    fn batched_tier[L: WrittenLaw][L](series: &mut SourceSeries<L>, order: Order<'_>, a: &mut [Lanes]) = batched;
 }
 
 impl<L: WrittenLaw> Series<Lanes> for SourceSeries<L> {
@@ -194,9 +212,9 @@ impl<L: WrittenLaw> Series<Lanes> for SourceSeries<L> {
         }
         let order = Order { n, jet, axes: self.axes };
         if self.kernel.packed {
-            self.packed(&order, a)
+            packed_tier(self, order, a)
         } else {
-            self.batched(&order, a)
+            batched_tier(self, order, a)
         }
         Ok(())
     }

@@ -64,8 +64,9 @@ impl<S: Element> Between<S> {
     pub(super) fn weigh(&self, theta: S, into: &mut Row<S>) {
         into.fraction = theta;
         for (terms, basis) in [&mut into.position, &mut into.velocity].into_iter().zip(&self.weights) {
-            terms.clear();
-            terms.extend((0..basis.len()).map(|stage| Term { stage, weight: S::zero() }));
+            if terms.len() != basis.len() {
+                *terms = (0..basis.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
+            }
             S::pass(Weigh { terms, basis, theta: &theta });
         }
     }

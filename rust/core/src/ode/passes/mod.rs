@@ -7,4 +7,5 @@ pub mod rates;
 pub mod series;
 pub mod stages;
 pub mod step_by_series;
+pub mod transformed;
 pub mod updates;

@@ -58,6 +58,14 @@ pub(super) trait Interpolant {
     /// Those of an evaluation.
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>>;
 
+    /// As [`at`](Self::at), for who looks at positions: velocities are about those.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn positions_at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        self.at(theta, ticker)
+    }
+
     /// How one coordinate moves in a lane: the terms of [`polynomial`](crate::ode::trial::Trial::polynomial). None are
     /// added by who has no polynomial.
     ///

@@ -367,20 +367,31 @@ struct Shadow<'r> {
     node: u64,
     before: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
-    /// The fraction of the step that it was taken to last.
-    last: Option<f64>,
+    /// The fraction of the step that it was taken to last, and whether its velocities are of there, too.
+    last: Option<(f64, bool)>,
     step: f64,
 }
 
 impl Interpolant for Shadow<'_> {
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
-        if self.last == Some(theta) {
+        if self.last == Some((theta, true)) {
             return Ok(self.between);
         }
         self.last = None;
         self.between.copy_from(self.before);
         self.stepper.between(self.node, theta * self.step, self.between, self.system, ticker)?;
-        self.last = Some(theta);
+        self.last = Some((theta, true));
+        Ok(self.between)
+    }
+
+    fn positions_at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        if self.last.is_some_and(|(last, _)| last == theta) {
+            return Ok(self.between);
+        }
+        self.last = None;
+        self.between.copy_from(self.before);
+        self.stepper.positions_between(self.node, theta * self.step, self.between, self.system, ticker)?;
+        self.last = Some((theta, false));
         Ok(self.between)
     }
 

@@ -8,9 +8,27 @@ use crate::ode::system::Needs;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// Who looks at forces besides kernels, and may know those of the first copy alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looks {
+    Nobody,
+    Series,
+    Transformation,
+}
+
+impl Looks {
+    /// Whether copies share lanes whose forces of this kind are each their own.
+    fn share(self, force: &Arc<dyn ForceTerm>) -> bool {
+        match self {
+            Self::Nobody => true,
+            Self::Series => force.series_in_every_lane(),
+            Self::Transformation => false,
+        }
+    }
+}
+
 /// The kind of the forces of each copy, by numbers from 0 on in the order of the copies; nothing if all have the same.
-/// Something besides kernels may look at forces, and know those of the first copy alone: then each set is a kind.
-pub(super) fn kinds_of_forces(scene: &Scene, looked_at: bool) -> Vec<usize> {
+pub(super) fn kinds_of_forces(scene: &Scene, looks: Looks) -> Vec<usize> {
     if scene.own_forces.is_none() {
         return Vec::new();
     }
@@ -19,7 +37,7 @@ pub(super) fn kinds_of_forces(scene: &Scene, looked_at: bool) -> Vec<usize> {
         let bodies = scene.bodies_of(copy);
         let mut key = Vec::new();
         for force in scene.forces_of(copy).iter().filter(|force| force.acts(&bodies)) {
-            describe(force, &bodies, looked_at, &mut key);
+            describe(force, &bodies, looks, &mut key);
         }
         let next = known.len();
         *known.entry(key).or_insert(next)
@@ -28,10 +46,10 @@ pub(super) fn kinds_of_forces(scene: &Scene, looked_at: bool) -> Vec<usize> {
 }
 
 /// Tells all that a plan asks of a force but for the numbers that each lane has for itself.
-fn describe(force: &Arc<dyn ForceTerm>, bodies: &Bodies<'_>, looked_at: bool, key: &mut Vec<u64>) {
+fn describe(force: &Arc<dyn ForceTerm>, bodies: &Bodies<'_>, looks: Looks, key: &mut Vec<u64>) {
     let start = key.len();
     key.extend([0, core::ptr::from_ref(force.declaration()).addr() as u64]);
-    match force.in_every_lane().filter(|_| !looked_at) {
+    match force.in_every_lane().filter(|_| looks.share(force)) {
         Some(numbers) => key.extend(numbers),
         // The same object is the same force.
         None => key.push(Arc::as_ptr(force).addr() as u64),

@@ -15,30 +15,33 @@ const MOST_BODIES: usize = 64;
 /// The method that `auto` prefers to the one that serves all. It is that of series where few bodies attract each other and
 /// nothing else acts: there it takes about the time of DOP853 and is off by a tenth to a ten thousandth of its errors. Measured on fourteen scenes of 3 to 8 bodies, massless ones and
 /// ensembles among them, with tolerances of 1e-6 to 1e-12: 0.6 to 1.6 times the time; of more bodies up to five times, and
-/// with flattening or relativity beside the pulls four to eight.
+/// with flattening or relativity beside the pulls about twice.
 ///
-/// Other forces may differ from copy to copy, and series share no lanes then.
+/// Series see all of formulas that are polynomials and waves, too, and take a third of the time there.
 ///
-/// Beside forces of which nothing is known beforehand it is DOP853: its steps are shorter, and its error estimate feels less of the
-/// rounding of places far from the origin. Of a hundred bodies that met small walls, written as expressions, it lost 48, and
-/// Verner's method 70.
+/// Beside other formulas, of which nothing is known beforehand, it is DOP853: its steps are shorter, and its error estimate
+/// feels less of the rounding of places far from the origin. Of a hundred bodies that met small walls, written as expressions,
+/// it lost 48, and Verner's method 70.
 pub(super) fn first_choice(
     forces: &[Arc<dyn ForceTerm>],
     active: &[usize],
     passive: &[usize],
     (groups, touching): (&Groups, bool),
 ) -> Option<&'static Method> {
-    if forces.iter().any(|force| force.is_formula()) {
-        return registry::method("dop853");
-    }
-    let method = registry::methods_for(false).find(|method| matches!(method.scheme, Scheme::Taylor(_)))?;
-    let gravity = matches!(forces, [force] if force.as_newtonian().is_some());
-    let serves = gravity
-        && active.len() <= RING_MAX
-        // Where bodies may touch, massless ones are on the steps of all: of many of them, series take longer.
-        && (passive.is_empty() || !touching)
-        && check(method, forces, active, passive, groups).is_ok();
-    serves.then_some(method)
+    let formula = forces.iter().any(|force| force.is_formula());
+    let series = registry::methods_for(false).find(|method| matches!(method.scheme, Scheme::Taylor(_)));
+    let told = if formula {
+        forces.iter().all(|force| !force.is_formula() || force.is_entire())
+    } else {
+        matches!(forces, [force] if force.as_newtonian().is_some())
+    };
+    let serves = |method: &&'static Method| {
+        told && active.len() <= RING_MAX
+            // Where bodies may touch, massless ones are on the steps of all: of many of them, series take longer.
+            && (passive.is_empty() || !touching)
+            && check(method, forces, active, passive, groups).is_ok()
+    };
+    series.filter(serves).or_else(|| if formula { registry::method("dop853") } else { None })
 }
 
 /// Refuses forces without series, and bodies that they do not serve.

@@ -29,9 +29,15 @@ fn described<'a>(systems: &[System<'a>]) -> impl Iterator<Item = (usize, &'a Arc
     systems.first().map_or(&[][..], |system| system.forces).iter().enumerate()
 }
 
-/// The same systems for series, which are made of the forces on the first copy and look at no other's.
-fn for_series<'a>(systems: &[System<'a>]) -> Vec<System<'a>> {
-    systems.iter().map(|system| System { forces: &[], ..*system }).collect()
+/// A force as a series: if it has not in every lane what the kernel has, of the forces on the first copy, without a look at
+/// another's.
+fn series(force: &Arc<dyn ForceTerm>, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+    if force.series_in_every_lane() {
+        return force.series(context);
+    }
+    let alike: Vec<System<'_>> =
+        context.systems.iter().map(|system| System { forces: &[], ..*system }).collect();
+    force.series(&Context { systems: &alike, ..*context })
 }
 
 /// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of
@@ -49,13 +55,12 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
         threads: 1,
     };
     let expands = matches!(plan.method.scheme, Scheme::Taylor(_));
-    let alike = for_series(&systems);
     let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
         if force.coupling() == Coupling::AllPairs {
             return None;
         }
         context.term = term;
-        let series = if expands { force.series(&Context { systems: &alike, ..context }) } else { None };
+        let series = if expands { series(force, &context) } else { None };
         Some((force.kernel(&context), series))
     };
     described(&systems).map(kernel).collect()
@@ -101,8 +106,12 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
     }
     let dynamics = Dynamics::new(shape, kernels);
     if matches!(plan.method.scheme, Scheme::Taylor(_)) {
-        let context = Context { systems: &for_series(&systems), ..context };
-        return dynamics.with_series(forces.iter().filter_map(|force| force.series(&context)).collect());
+        let mut all = Vec::with_capacity(forces.len());
+        for (term, force) in forces.iter().enumerate() {
+            context.term = term;
+            all.extend(series(force, &context));
+        }
+        return dynamics.with_series(all);
     }
     match plan.transformed {
         None => dynamics,

@@ -1,6 +1,6 @@
 //! One massless body in each lane, along series of the massive ones.
 
-use super::{Kept, Orders, Pairs};
+use super::{Kept, Orders, Pairs, Whole};
 use crate::numerics::element::{Element, Pass, Shape, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
@@ -40,6 +40,12 @@ impl PullSeries {
         let orders = Orders { kept: &mut self.kept, jet, n, a, first };
         Lanes::pass(Pull { massive, softening2: self.softening2, orders });
     }
+
+    /// As [`Series::expand`](crate::forces::series::Series::expand).
+    pub fn expand(&mut self, massive: Massive<'_, Lanes>, jet: &mut Jet<Lanes>, a: &mut [Lanes]) {
+        let whole = Whole { kept: &mut self.kept, jet, a };
+        Lanes::pass(AllPulls { massive, softening2: self.softening2, whole });
+    }
 }
 
 struct Pull<'a> {
@@ -48,19 +54,40 @@ struct Pull<'a> {
     orders: Orders<'a, Lanes>,
 }
 
+/// Of all orders.
+struct AllPulls<'a> {
+    massive: Massive<'a, Lanes>,
+    softening2: f64,
+    whole: Whole<'a, Lanes>,
+}
+
 impl Pass<Lanes> for Pull<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let Massive { strength, places, rests } = self.massive;
-        let massive = Massive { strength: V::view(strength), places: V::view(places), rests: V::view(rests) };
-        self.orders.run::<V, Seen<'_, V>>(&Seen { massive, softening2: self.softening2 });
+        self.orders.run::<V, Seen<'_, V>>(&Seen::of(self.massive, self.softening2));
+    }
+}
+
+impl Pass<Lanes> for AllPulls<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) {
+        self.whole.run::<V, Seen<'_, V>>(&Seen::of(self.massive, self.softening2));
     }
 }
 
 struct Seen<'a, V> {
     massive: Massive<'a, V>,
     softening2: f64,
+}
+
+impl<'a, V: View<Lanes>> Seen<'a, V> {
+    #[inline(always)]
+    fn of(Massive { strength, places, rests }: Massive<'a, Lanes>, softening2: f64) -> Self {
+        let massive = Massive { strength: V::view(strength), places: V::view(places), rests: V::view(rests) };
+        Self { massive, softening2 }
+    }
 }
 
 impl<V: InverseCube> Pairs<V> for Seen<'_, V> {

@@ -82,14 +82,26 @@ impl Search<'_, '_> {
         Ok(self.sight_at(theta, step, ticker)?.value)
     }
 
+    /// Of what follows from positions, the velocities are about those.
     pub(super) fn sight_at(
         &mut self,
         theta: f64,
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<Sight> {
+        self.sight_of_state(theta, !self.is_of_positions(), step, ticker)
+    }
+
+    /// On the polynomial, or where there is none on the solution, with the velocities there if they are wanted.
+    pub(super) fn sight_of_state(
+        &mut self,
+        theta: f64,
+        velocities: bool,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Sight> {
         if self.watch.terms.is_empty() || self.watch.settles {
-            let state = step.at(theta, ticker)?;
+            let state = if velocities { step.at(theta, ticker)? } else { step.positions_at(theta, ticker)? };
             self.watch.bodies.read(state, &mut self.watch.inside);
             self.sight_inside(theta, ticker)
         } else {

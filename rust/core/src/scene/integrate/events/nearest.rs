@@ -17,6 +17,16 @@ pub(super) fn around(points: &[(f64, f64)], [(from, _), (to, _)]: Bracket) -> [f
     [before, from, to, after]
 }
 
+/// The velocity of bodies that is not evaluated may be so many times farther off than it is from that of the cubic.
+const TIMES_OFF: f64 = 4.0;
+
+/// Whether bodies near their closest approach, with velocities that may be so far off, come no nearer than by a half of what is
+/// between them and the distance that is looked for, if they go on as they do there.
+fn clears(Sight { value, distance, velocity }: &Sight, off: f64) -> bool {
+    let along = dot(*distance, *velocity).abs() + TIMES_OFF * off * dot(*distance, *distance).sqrt();
+    along * along < 0.5 * value * dot(*velocity, *velocity)
+}
+
 impl Search<'_, '_> {
     /// The rate of the value along the step, up to a factor above zero, where it follows from what is seen at one time.
     pub(super) fn rate(&self, sight: &Sight) -> Option<f64> {
@@ -28,36 +38,30 @@ impl Search<'_, '_> {
         matches!(self.watch.event(self.event).0.what, What::Distance { .. })
     }
 
+    /// Whether its value is told by positions alone.
+    pub(super) fn is_of_positions(&self) -> bool {
+        self.is_distance() || matches!(self.watch.event(self.event).0.what, What::Plane { .. })
+    }
+
     /// Where a value that is nearest to zero between two points of the same sign, of which this is the first, passes zero
     /// there: two brackets, or none. That is where the rate changes its sign, however short the approach is; on the solution
     /// it may do so beside them.
     pub(super) fn nearest(
         &mut self,
         points: &[(f64, f64)],
-        mut index: usize,
+        index: usize,
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Bracket>> {
-        let sign = points[index].1.signum();
-        let mut rates = [0.0; 2];
-        for (rate, point) in rates.iter_mut().zip(&points[index..]) {
-            *rate = sign * self.rate_at(point.0, step, ticker)?;
-        }
-        if rates[0] >= 0.0 && index > 0 {
-            index -= 1;
-            rates = [sign * self.rate_at(points[index].0, step, ticker)?, rates[0]];
-        } else if rates[1] <= 0.0 && index + 2 < points.len() {
-            index += 1;
-            rates = [rates[1], sign * self.rate_at(points[index + 1].0, step, ticker)?];
-        }
-        if rates[0] >= 0.0 || rates[1] <= 0.0 {
+        if self.passes_by(points, index, step, ticker)? {
             return Ok(Vec::new());
         }
-        let (a, b) = (points[index], points[index + 1]);
-        let mut theta =
-            zero([(a.0, rates[0]), (b.0, rates[1])], |theta| Ok(sign * self.rate_at(theta, step, ticker)?))?;
+        let Some(([a, b], mut theta)) = self.turn_of_rate(points, (index, true), step, ticker)? else {
+            return Ok(Vec::new());
+        };
+        let sign = a.1.signum();
         for _ in 0..POLISHES {
-            let sight = self.sight_at(theta, step, ticker)?;
+            let sight = self.sight_of_state(theta, true, step, ticker)?;
             if sight.value * sign <= 0.0 {
                 return Ok(vec![[a, (theta, sight.value)], [(theta, sight.value), b]]);
             }
@@ -73,6 +77,57 @@ impl Search<'_, '_> {
             theta = next;
         }
         Ok(Vec::new())
+    }
+
+    /// Whether two bodies pass each other by far, as most do: told from about where they are nearest, since to find that place
+    /// takes several states.
+    fn passes_by(
+        &mut self,
+        points: &[(f64, f64)],
+        index: usize,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<bool> {
+        if !self.is_distance() || !self.watch.terms.is_empty() {
+            return Ok(false);
+        }
+        let Some(([a, _], theta)) = self.turn_of_rate(points, (index, false), step, ticker)? else {
+            return Ok(false);
+        };
+        let (about, between) = (self.sight_at(theta, step, ticker)?, self.sight_between(theta, ticker)?);
+        let off = core::array::from_fn(|c| about.velocity[c] - between.velocity[c]);
+        let far = clears(&about, dot(off, off).sqrt())
+            || clears(&self.sight_of_state(theta, true, step, ticker)?, 0.0);
+        Ok(a.1 > 0.0 && far)
+    }
+
+    /// Between which points of the same sign the rate changes its sign, and where; beside the first of them that is this one.
+    /// By velocities as exact as the positions, or by those that cost nothing.
+    fn turn_of_rate(
+        &mut self,
+        points: &[(f64, f64)],
+        (mut index, velocities): (usize, bool),
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Option<(Bracket, f64)>> {
+        let sign = points[index].1.signum();
+        let mut rate = |theta: f64| -> Result<f64> {
+            let sight = self.sight_of_state(theta, velocities, step, ticker)?;
+            Ok(sign * self.rate(&sight).unwrap_or_default())
+        };
+        let mut rates = [rate(points[index].0)?, rate(points[index + 1].0)?];
+        if rates[0] >= 0.0 && index > 0 {
+            index -= 1;
+            rates = [rate(points[index].0)?, rates[0]];
+        } else if rates[1] <= 0.0 && index + 2 < points.len() {
+            index += 1;
+            rates = [rates[1], rate(points[index + 1].0)?];
+        }
+        if rates[0] >= 0.0 || rates[1] <= 0.0 {
+            return Ok(None);
+        }
+        let (a, b) = (points[index], points[index + 1]);
+        Ok(Some(([a, b], zero([(a.0, rates[0]), (b.0, rates[1])], rate)?)))
     }
 
     /// Where the solution passes zero about a place where the cubic does, but not between the same points.
@@ -100,10 +155,5 @@ impl Search<'_, '_> {
             Some(&[left, middle, right]) => self.turn(left, middle, right, step, ticker),
             _ => Ok(Vec::new()),
         }
-    }
-
-    fn rate_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let sight = self.sight_at(theta, step, ticker)?;
-        Ok(self.rate(&sight).unwrap_or_default())
     }
 }

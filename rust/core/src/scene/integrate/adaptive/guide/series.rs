@@ -63,24 +63,15 @@ impl Pass<Lanes> for Shift<'_> {
         let (x, ratio) = (V::load(*self.t) / unit, V::load(*self.unit) / unit);
         let (blocks, into) = (V::view_mut(&mut self.into.blocks), V::view_mut(&mut self.into.rests));
         let highest = blocks.len() / numbers - 1;
-        // Repeated synthetic division.
-        for order in 0..highest {
-            for power in (order + 1..highest).rev() {
-                let (lower, higher) = blocks[power * numbers..].split_at_mut(numbers);
-                let higher = &higher[..numbers];
-                for number in 0..numbers {
-                    lower[number] = higher[number].multiply_add(x, lower[number]);
-                }
-            }
-            let (lower, higher) = blocks[order * numbers..].split_at_mut(numbers);
-            for number in 0..numbers {
-                if order == 0 {
-                    let (place, rest) = two_sum(lower[number], higher[number] * x);
-                    (lower[number], into[number]) = (place, rest + rests[number]);
-                } else {
-                    lower[number] = higher[number].multiply_add(x, lower[number]);
-                }
-            }
+        let mut division = Division { blocks: &mut *blocks, numbers, highest, x, rests, into };
+        let mut start = 0;
+        while numbers - start >= 3 {
+            division.all::<3>(start);
+            start += 3;
+        }
+        while numbers > start {
+            division.all::<1>(start);
+            start += 1;
         }
         let mut power = V::one();
         for block in blocks.chunks_exact_mut(numbers) {
@@ -88,6 +79,69 @@ impl Pass<Lanes> for Shift<'_> {
                 *coefficient = *coefficient * power;
             }
             power = power * ratio;
+        }
+    }
+}
+
+/// Passes of a division that go through the coefficients together, each an order behind the one before: alone, each would wait
+/// for its last product.
+const PASSES: usize = 4;
+
+/// Repeated synthetic division by a time.
+struct Division<'a, V> {
+    blocks: &'a mut [V],
+    numbers: usize,
+    highest: usize,
+    x: V,
+    /// What those of order 0 leave out, before and after.
+    rests: &'a [V],
+    into: &'a mut [V],
+}
+
+impl<V: Real> Division<'_, V> {
+    /// Of `G` numbers from `start` on.
+    #[inline(always)]
+    fn all<const G: usize>(&mut self, start: usize) {
+        let mut order = 0;
+        while self.highest - order >= PASSES {
+            self.passes::<PASSES, G>(order, start);
+            order += PASSES;
+        }
+        while self.highest > order {
+            self.passes::<1, G>(order, start);
+            order += 1;
+        }
+    }
+
+    #[inline(always)]
+    fn passes<const K: usize, const G: usize>(&mut self, order: usize, start: usize) {
+        let Self { numbers, highest, x, .. } = *self;
+        let mut found = [[V::zero(); G]; K];
+        for pass in &mut found {
+            pass.copy_from_slice(&self.blocks[highest * numbers + start..][..G]);
+        }
+        for power in (order + K..highest).rev() {
+            let block = &mut self.blocks[power * numbers + start..][..G];
+            for k in 0..K {
+                for g in 0..G {
+                    found[k][g] = found[k][g].multiply_add(x, block[g]);
+                    block[g] = found[k][g];
+                }
+            }
+        }
+        for last in (0..K).rev() {
+            let block = &mut self.blocks[(order + last) * numbers + start..][..G];
+            for k in 0..=last {
+                for g in 0..G {
+                    if order + last == 0 {
+                        let (place, rest) = two_sum(block[g], found[k][g] * x);
+                        (block[g], self.into[start + g]) = (place, rest + self.rests[start + g]);
+                    } else {
+                        found[k][g] = found[k][g].multiply_add(x, block[g]);
+                        block[g] = found[k][g];
+                    }
+                }
+            }
         }
     }
 }
@@ -108,6 +162,11 @@ impl Guided {
         let Shifted { blocks, rests, a } = &mut self.shifted;
         let since = jet.t;
         jet.t = self.base + since;
+        if let [Term::Following(only)] = &mut self.terms[..] {
+            only.expand(MassiveSeries { places: blocks, rests }, jet, a)?;
+            jet.t = since;
+            return Ok(());
+        }
         for n in 0..jet.order {
             for (index, term) in self.terms.iter_mut().enumerate() {
                 match term {
