@@ -1,6 +1,6 @@
 """Formulas of which Taylor series tell all, polynomials and waves of places and times: `auto` takes series there.
 
-References: closed forms, and Mathieu's equation to 30 digits. Bounds: a run held to 1e-12 has been seen to reach a tenth
+References: closed forms, and Mathieu's equation to 30 digits. Bounds: a run held to 1e-12 has been seen at a tenth
 each; copies have the bits that they have alone.
 """
 

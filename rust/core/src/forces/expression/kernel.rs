@@ -9,6 +9,7 @@ use crate::forces::context::Context;
 use crate::forces::series::Series;
 use crate::forces::{Adds, Force, Phase};
 use crate::numerics::element::Shape;
+use crate::numerics::integrals::raise;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
@@ -237,7 +238,21 @@ fn coefficient_body<V: Vector8 + Scalar>(
     }
 }
 
+/// All coefficients of motions under nothing else.
+#[inline(always)]
+fn whole_body<V: Vector8 + Scalar>(force: &mut Expanded, jet: &mut Jet<Lanes>, a: &mut [Lanes]) {
+    let len = jet.len;
+    for n in 0..jet.order {
+        coefficient_body::<V>(force, n, jet, a, true);
+        let [of_v, of_q] = [&jet.inverse[n + 1], &jet.inverse[n + 2]];
+        let (of_v, of_q) = ((V::load(of_v.0), V::load(of_v.1)), (V::load(of_q.0), V::load(of_q.1)));
+        let (v, q) = (&mut jet.v[(n + 1) * len..][..len], &mut jet.q[(n + 2) * len..][..len]);
+        raise(V::view(a), of_v, of_q, V::view_mut(v), V::view_mut(q));
+    }
+}
+
 tiered! {
+    fn whole_tier[][](force: &mut Expanded, jet: &mut Jet<Lanes>, a: &mut [Lanes]) = whole_body;
     fn coefficient_tier[][](force: &mut Expanded, n: usize, jet: &Jet<Lanes>, a: &mut [Lanes], first: bool) = coefficient_body;
 }
 
@@ -251,6 +266,11 @@ impl Series<Lanes> for Expanded {
         _: &mut Ticker<'_>,
     ) -> Result<()> {
         coefficient_tier(self, n, jet, a, first);
+        Ok(())
+    }
+
+    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], _: &mut Ticker<'_>) -> Result<()> {
+        whole_tier(self, jet, a);
         Ok(())
     }
 

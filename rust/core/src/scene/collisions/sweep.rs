@@ -1,10 +1,11 @@
 //! Which boxes meet: sorted along the axis on which they are spread most, each is compared with those that begin within it.
 
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers_mut};
+use crate::numerics::real::Mask;
+use crate::tiered;
+
 /// So few boxes are compared each with each other: to sort them would take longer.
 const FEW: usize = 12;
-
-/// Boxes that are compared with one at a time, without a look at each that a processor would have to foresee.
-const AT_ONCE: usize = 8;
 
 /// A box, low and high along three axes.
 type Box3 = [[f64; 2]; 3];
@@ -13,9 +14,10 @@ type Box3 = [[f64; 2]; 3];
 struct Sorted {
     boxes: Vec<Box3>,
     indices: Vec<usize>,
-    /// Where they begin along that axis, and low and high along the two others.
+    /// Where they begin along that axis.
     begins: Vec<f64>,
-    across: [[Vec<f64>; 2]; 2],
+    /// Low and high along one of the others, then along the third, eight boxes to each.
+    across: [Vec<Lanes>; 4],
 }
 
 impl Sorted {
@@ -24,41 +26,68 @@ impl Sorted {
         let told = |own: &Box3| !(own[axis][0].is_nan() || own[axis][1].is_nan());
         let mut indices: Vec<usize> = (0..boxes.len()).filter(|&i| takes(i) && told(&boxes[i])).collect();
         indices.sort_by(|&a, &b| boxes[a][axis][0].total_cmp(&boxes[b][axis][0]));
-        let along = |axis: usize, end: usize| -> Vec<f64> {
-            indices.iter().map(|&index| boxes[index][axis][end]).collect()
-        };
-        let across = [(axis + 1) % 3, (axis + 2) % 3].map(|axis| [along(axis, 0), along(axis, 1)]);
-        let begins = along(axis, 0);
-        Self { boxes: indices.iter().map(|&index| boxes[index]).collect(), indices, begins, across }
-    }
-
-    /// Of those from the place `from` on that begin within a box along the axis, those that meet it.
-    fn within(&self, own: &Box3, axis: usize, from: usize, mut each: impl FnMut(usize)) {
-        let end = from + self.begins[from..].partition_point(|begin| *begin <= own[axis][1]);
-        let ([y, z], [low, high]) = ([(axis + 1) % 3, (axis + 2) % 3].map(|axis| own[axis]), &self.across);
-        let mut start = from;
-        while start < end {
-            let count = (end - start).min(AT_ONCE);
-            let part = |of: &Vec<f64>| -> [f64; AT_ONCE] {
-                // What is no number meets nobody.
-                let mut part = [f64::NAN; AT_ONCE];
-                part[..count].copy_from_slice(&of[start..start + count]);
-                part
-            };
-            let [[y_low, y_high], [z_low, z_high]] = [low, high].map(|ends| [part(&ends[0]), part(&ends[1])]);
-            let mut met = 0_u32;
-            for k in 0..AT_ONCE {
-                let meets =
-                    (y_low[k] <= y[1]) & (y[0] <= y_high[k]) & (z_low[k] <= z[1]) & (z[0] <= z_high[k]);
-                met |= u32::from(meets) << k;
+        let across = [(1, 0), (1, 1), (2, 0), (2, 1)].map(|(further, end)| {
+            let mut along = vec![Lanes([f64::NAN; WIDTH]); indices.len().div_ceil(WIDTH)];
+            for (number, &index) in as_numbers_mut(&mut along).iter_mut().zip(&indices) {
+                *number = boxes[index][(axis + further) % 3][end];
             }
-            while met != 0 {
-                each(self.indices[start + met.trailing_zeros() as usize]);
-                met &= met - 1;
-            }
-            start += count;
+            along
+        });
+        Self {
+            boxes: indices.iter().map(|&index| boxes[index]).collect(),
+            begins: indices.iter().map(|&index| boxes[index][axis][0]).collect(),
+            indices,
+            across,
         }
     }
+
+    /// Of those from the place `from` on that begin within a box along the axis, those that meet it; `met` is room.
+    fn within(
+        &self,
+        (own, axis): (&Box3, usize),
+        from: usize,
+        met: &mut Vec<Bits>,
+        mut each: impl FnMut(usize),
+    ) {
+        let Self { indices, begins, across, .. } = self;
+        let end = from + begins[from..].partition_point(|begin| *begin <= own[axis][1]);
+        if from == end {
+            return;
+        }
+        let rows = from / WIDTH..end.div_ceil(WIDTH);
+        met.clear();
+        met.resize(rows.len(), Bits(0));
+        let [y, z] = [(axis + 1) % 3, (axis + 2) % 3].map(|axis| own[axis]);
+        let across = [0, 1, 2, 3].map(|of| &across[of][rows.clone()]);
+        meeting_tier(across, [y[0], y[1], z[0], z[1]], met);
+        for (row, Bits(mut bits)) in rows.zip(met.iter().copied()) {
+            while bits != 0 {
+                let place = row * WIDTH + bits.trailing_zeros() as usize;
+                if (from..end).contains(&place) {
+                    each(indices[place]);
+                }
+                bits &= bits - 1;
+            }
+        }
+    }
+}
+
+/// Which boxes, eight at a time, meet one along two axes: low and high along the first, then along the second.
+#[inline(always)]
+fn meeting<V: Vector8>(across: [&[Lanes]; 4], own: [f64; 4], met: &mut [Bits]) {
+    let rows = met.len();
+    let (y_low, y_high) = (&V::view(across[0])[..rows], &V::view(across[1])[..rows]);
+    let (z_low, z_high) = (&V::view(across[2])[..rows], &V::view(across[3])[..rows]);
+    let (y, z) = ([V::splat(own[0]), V::splat(own[1])], [V::splat(own[2]), V::splat(own[3])]);
+    for row in 0..rows {
+        let along_y = y_low[row].less_equal(y[1]).and(y[0].less_equal(y_high[row]));
+        let along_z = z_low[row].less_equal(z[1]).and(z[0].less_equal(z_high[row]));
+        met[row] = along_y.and(along_z);
+    }
+}
+
+tiered! {
+    fn meeting_tier[][](across: [&[Lanes]; 4], own: [f64; 4], met: &mut [Bits]) = meeting;
 }
 
 /// Calls for each pair of boxes (low and high along three axes) that meet, one of which is a sphere's.
@@ -82,19 +111,20 @@ pub fn swept(boxes: &[Box3], is_sphere: impl Fn(usize) -> bool, mut each: impl F
     // Points never meet points: millions of them beside a few spheres cost next to nothing.
     let spheres = Sorted::new(boxes, axis, &is_sphere);
     let points = Sorted::new(boxes, axis, |index| !is_sphere(index));
+    let mut met = Vec::new();
     for (place, (own, &index)) in spheres.boxes.iter().zip(&spheres.indices).enumerate() {
-        spheres.within(own, axis, place + 1, |other| each(index, other));
+        spheres.within((own, axis), place + 1, &mut met, |other| each(index, other));
     }
     // Of a sphere and a point the one that begins later begins within the other.
     let mut first = 0;
     for (own, &index) in spheres.boxes.iter().zip(&spheres.indices) {
         first += points.begins[first..].iter().take_while(|begin| **begin < own[axis][0]).count();
-        points.within(own, axis, first, |other| each(index, other));
+        points.within((own, axis), first, &mut met, |other| each(index, other));
     }
     first = 0;
     for (own, &index) in points.boxes.iter().zip(&points.indices) {
         first += spheres.begins[first..].iter().take_while(|begin| **begin <= own[axis][0]).count();
-        spheres.within(own, axis, first, |other| each(index, other));
+        spheres.within((own, axis), first, &mut met, |other| each(index, other));
     }
 }
 
