@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
+import pytest
 
 import visviva as vv
 
@@ -61,3 +64,28 @@ def test_the_order_of_bodies_changes_no_contact() -> None:
     np.testing.assert_allclose(here.collisions.t, there.collisions.t, rtol=0, atol=1e-13)
     # Hundreds of contacts between spheres tell roundings apart by about ten for each that a sphere has had.
     np.testing.assert_allclose(here.final.particles.position[order], there.final.particles.position, rtol=0, atol=1e-9)
+
+
+def test_a_contact_within_a_step_that_is_too_long_is_where_the_method_has_it() -> None:
+    """Where velocities say nothing of the way inside a step, as of a composition with steps back, places do."""
+    falls = vv.ExpressionForce(acceleration=lambda r, v, t: [-r[0] * (1 + np.sin(5 * t)), -r[1] * t, -r[2]])
+    t0 = 1.63767198698917
+    bodies = vv.Particles(
+        [1.5279008010481698, 1.119240244173477],
+        [
+            [-0.42706614107752183, 0.6455095628565112, -0.8280929593478952],
+            [-1.1952318156281652, 0.6345375322592814, -1.0733968535032168],
+        ],
+        [
+            [-2.5213267291020873, -0.2777211872450179, -2.2749492295625613],
+            [0.3650814137876209, -1.7385568963766946, 0.5444570226351699],
+        ],
+        radius=0.1,
+    )
+    scene = vv.Scene(bodies, falls, vv.Gravity(3.0), t0=t0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", vv.AccuracyWarning)
+        contact = scene.run(t=t0 + 0.25, method="kahan_li8", dt=0.25, collisions="stop").collisions.t[0]
+        there = scene.run(t=contact, method="kahan_li8", dt=contact - t0).position[-1]
+    # The time of day and the step are rounded; the gap closes at about one per unit of time.
+    assert np.linalg.norm(there[0] - there[1]) == pytest.approx(0.2, rel=0, abs=1e-12)

@@ -88,11 +88,14 @@ fn steps<S: Controlled>(
     let system: &mut dyn System<S> = &mut orbit;
     let trial = Transformed::new(table, by, S::one(), system, &state, false);
     let mut beside = Beside { weight: (weight, S::zero()), ..trial.beside.clone() };
+    let [mut shares, _] = trial.shares.clone();
     let mut time = t;
     for _ in 0..count {
         let h = (S::splat(h), Time::Transformed);
-        let (taken, rest) =
-            trial.moves.advance(h, S::zero(), (&mut state, &mut beside), system, &mut ticker).unwrap();
+        let (taken, rest) = trial
+            .moves
+            .advance(h, S::zero(), (&mut state, &mut beside, &mut shares), system, &mut ticker)
+            .unwrap();
         time += taken + rest;
     }
     let (q, v) = (state.q(), state.v());

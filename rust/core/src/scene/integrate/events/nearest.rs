@@ -17,14 +17,16 @@ pub(super) fn around(points: &[(f64, f64)], [(from, _), (to, _)]: Bracket) -> [f
     [before, from, to, after]
 }
 
-/// The velocity of bodies that is not evaluated may be so many times farther off than it is from that of the cubic.
+/// What is between bodies, and the velocity that is not evaluated, may be so many times farther off than they are from those of
+/// the cubic.
 const TIMES_OFF: f64 = 4.0;
 
-/// Whether bodies near their closest approach, with velocities that may be so far off, come no nearer than by a half of what is
-/// between them and the distance that is looked for, if they go on as they do there.
-fn clears(Sight { value, distance, velocity }: &Sight, off: f64) -> bool {
-    let along = dot(*distance, *velocity).abs() + TIMES_OFF * off * dot(*distance, *distance).sqrt();
-    along * along < 0.5 * value * dot(*velocity, *velocity)
+/// Whether bodies near their closest approach, with distance and velocity that may be so far off, come no nearer than by a half
+/// of what is between them and the distance that is looked for, if they go on as they do there.
+fn clears(Sight { value, distance, velocity }: &Sight, [off, slower]: [f64; 2]) -> bool {
+    let apart = dot(*distance, *distance).sqrt();
+    let along = dot(*distance, *velocity).abs() + slower * apart;
+    along * along + 2.0 * off * apart * dot(*velocity, *velocity) < 0.5 * value * dot(*velocity, *velocity)
 }
 
 impl Search<'_, '_> {
@@ -95,9 +97,13 @@ impl Search<'_, '_> {
             return Ok(false);
         };
         let (about, between) = (self.sight_at(theta, step, ticker)?, self.sight_between(theta, ticker)?);
-        let off = core::array::from_fn(|c| about.velocity[c] - between.velocity[c]);
-        let far = clears(&about, dot(off, off).sqrt())
-            || clears(&self.sight_of_state(theta, true, step, ticker)?, 0.0);
+        let off = |a: [f64; 3], b: [f64; 3]| {
+            let off = core::array::from_fn(|c| a[c] - b[c]);
+            TIMES_OFF * dot(off, off).sqrt()
+        };
+        let (place, slower) = (off(about.distance, between.distance), off(about.velocity, between.velocity));
+        let far = clears(&about, [place, slower])
+            || clears(&self.sight_of_state(theta, true, step, ticker)?, [place, 0.0]);
         Ok(a.1 > 0.0 && far)
     }
 
