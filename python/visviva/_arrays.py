@@ -36,6 +36,8 @@ Sizes: TypeAlias = dict[str, tuple[int, str]]
 
 _EXACT = 2**53
 _FLOAT64 = np.dtype(np.float64)
+#: The total of as many as there may be, none larger than this, is a number.
+_SURELY_SUMMED = 1e280
 # Made once: a union of types takes longer to make than to ask.
 _WHOLE, _OF_NUMPY = int | np.integer, np.ndarray | np.generic
 _ADVICE = {
@@ -92,6 +94,8 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
     array = _real(name, value) if ready is None else ready
     if shape is not None:
         _check_shape(name, array.shape, shape, {} if sizes is None else sizes)
+    if ready is None:
+        ready = _ready(array)  # as arrays of lists are
     result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"]) if ready is None else ready
     finite = np.isfinite(result)
     if np.count_nonzero(finite) < finite.size:
@@ -124,17 +128,19 @@ def mass_array(value: object, shape: Shape, sizes: Sizes | None = None) -> NDArr
     """
     array = float_array("mass", value, shape, sizes)
     negative = array < 0.0
-    if negative.any():
+    if np.count_nonzero(negative):
         which = _first("mass", array, negative)
         raise InvalidInput("mass", f"expected masses of at least 0, but {which}; 0 marks a test particle")
-    with np.errstate(over="ignore"):
-        finite = np.isfinite(array.sum(axis=-1)).all() if array.ndim else True
-    if not finite:
-        raise InvalidInput(
-            "mass",
-            f"expected masses whose total is within the range of float64, but the largest is {array.max():g}; "
-            "choose a larger unit of mass",
-        )
+    largest = array.max(initial=0.0)
+    if array.ndim and largest > _SURELY_SUMMED:
+        with np.errstate(over="ignore"):
+            finite = np.isfinite(array.sum(axis=-1)).all()
+        if not finite:
+            raise InvalidInput(
+                "mass",
+                f"expected masses whose total is within the range of float64, but the largest is {largest:g}; "
+                "choose a larger unit of mass",
+            )
     return array
 
 
@@ -276,23 +282,23 @@ def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**6
 
 def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
     """Give an array of a type that float64 holds exactly."""
-    came = article(type(value).__name__)
     if hasattr(value, "units") or hasattr(value, "unit"):
         raise InvalidInput(
             name,
-            f"expected plain numbers, got {came} with a unit; pass its value in the scene's units",
+            f"expected plain numbers, got {_came(value)} with a unit; pass its value in the scene's units",
         )
     if isinstance(value, np.ndarray) and hasattr(value, "mask"):  # not np.ma, which would be imported for this
         raise InvalidInput(name, "expected plain numbers, got a masked array; pass x.compressed() or x.filled(…)")
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:
-        raise InvalidInput(name, f"expected an array of real numbers, got {came} that is none: {error}") from None
+        message = f"expected an array of real numbers, got {_came(value)} that is none: {error}"
+        raise InvalidInput(name, message) from None
     if not isinstance(value, _OF_NUMPY) or array.dtype.kind == "O":
         array = _rounded(name, array)
     kind, dtype = array.dtype.kind, array.dtype
     if kind in _ADVICE:
-        what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{came} (dtype {dtype.name})"
+        what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{_came(value)} (dtype {dtype.name})"
         raise InvalidInput(name, f"expected real numbers, got {what}; {_ADVICE[kind]}")
     if kind == "f" and dtype.itemsize > 8:
         raise InvalidInput(name, f"expected at most float64, got {dtype.name}; round it with x.astype(np.float64)")
@@ -302,6 +308,10 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
             "expected integers up to 2**53, which float64 holds exactly, got larger; round them with x.astype(float)",
         )
     return array
+
+
+def _came(value: object) -> str:
+    return article(type(value).__name__)
 
 
 def _rounded(name: str, array: NDArray[Any]) -> NDArray[Any]:
@@ -350,6 +360,8 @@ def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -
 
 def radius_array(value: ArrayLike, shape: tuple[int, ...], sizes: Sizes | None = None) -> NDArray[np.float64]:
     """Radii of this shape: one for all, or one for each body."""
+    if type(value) is float and 0.0 <= value < math.inf:
+        return np.full(shape, value)
     given = float_array("radius", value, () if np.ndim(value) == 0 else ("N",) if len(shape) == 1 else shape, sizes)
     if (given < 0.0).any():
         raise InvalidInput("radius", f"expected radii of at least 0, got {float(given.min())}; 0 is a point")

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Part", "sorted_parts"]
 
+# Made once: a union of types takes longer to make than to ask.
+_PART, _SEVERAL = Particles | RigidBodies | Force | BodyForce, list | tuple
+
 
 def sorted_parts(
     parts: Sequence[Part | Sequence[Part]],
@@ -41,7 +44,7 @@ def sorted_parts(
     rigid = [part for part in all_parts if isinstance(part, RigidBodies)]
     named = sum(len(_flat(part)) for part in (*parts, *by_name))  # what follows came as forces=
     for place, part in enumerate(all_parts):
-        if not isinstance(part, Particles | RigidBodies | Force | BodyForce):
+        if not isinstance(part, _PART):
             came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
             known = ", ".join(name for name in force_classes.__all__ if name != "Force")
             argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
@@ -53,4 +56,4 @@ def sorted_parts(
 
 
 def _flat(part: object) -> Sequence[object]:
-    return part if isinstance(part, list | tuple) else (part,)
+    return part if isinstance(part, _SEVERAL) else (part,)

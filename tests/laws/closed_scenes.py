@@ -112,5 +112,10 @@ def energy_error(scene: vv.Scene, error: float) -> float:
     return 2.0 * total * (speed + acceleration) * error
 
 
+def energy_changes(out: vv.Trajectory) -> NDArray[np.float64]:
+    """What the energy has gained at each time."""
+    return out.energy - out.energy[0]
+
+
 def distance(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     return float(np.abs(a - b).max())

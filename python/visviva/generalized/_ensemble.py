@@ -207,7 +207,7 @@ class GeneralizedEnsemble(Shown):
             result = self.system._run(asked, self._states, self._parameters, threads, progress)
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         lasts = out._states[:, -1], float(out.t[-1])
-        warn_of_coarse_times(self.system, asked, np.concatenate([self._states, lasts[0]]), self._parameters)
+        warn_of_coarse_times(self.system, asked, (self._states, lasts[0]), self._parameters)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
         try:

@@ -116,15 +116,16 @@ def warn_if_unresolved(
 
 
 def warn_of_coarse_times(
-    system: GeneralizedSystem, asked: dict[str, Any], states: NDArray[np.float64], values: NDArray[np.float64]
+    system: GeneralizedSystem, asked: dict[str, Any], ends: tuple[NDArray[np.float64], ...], values: NDArray[np.float64]
 ) -> None:
     """Warn where the rates change from one time to the next number by more than is asked for.
 
-    At states (k B, 2n) of B copies, those of all of them one after another, with the values of their parameters (B, P).
+    At the ends: states (B, 2n) of copies, with the values of their parameters (B, P).
     """
-    if system._structure["autonomous"] or not times_may_be_coarse(*asked["span"]):
+    if not times_may_be_coarse(*asked["span"]) or system._structure["autonomous"]:
         return
 
+    states = np.concatenate(ends)
     parameters = np.tile(values, (len(states) // len(values), 1))
 
     def told(states: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -221,7 +221,7 @@ class Runs(States):
         if STATUS[result["endings"][0]] is Status.STOPPED and _is_end(t):
             _end_at_the_stop(result)
         out = GeneralizedTrajectory(as_system(self), result, asked)
-        warn_of_coarse_times(as_system(self), asked, np.vstack([start, *out._states[-1:]]), self._values[None, :])
+        warn_of_coarse_times(as_system(self), asked, (start[None, :], out._states[-1:]), self._values[None, :])
         if result["interrupted"]:
             raise Interrupted("the run was interrupted", out)
         failure = result["failures"][0]

@@ -74,11 +74,12 @@ def described(
         walk = calls(nodes, names, keys, _SECOND[kind])
     else:
         sp = sympy(argument)
-        first = tuple(_coordinate(sp, each) for each in listed)
-        others = _second(sp, kind, first, second)
-        names = tuple(_label(each) for each in first)
-        keys = tuple(_name(each) for each in given)
-        parameter_symbols = tuple(_parameter(sp, each, function) for each in given)
+        t = time._sympy_()
+        first = tuple([_coordinate(sp, t, each) for each in listed])
+        others = _second(sp, t, kind, first, second)
+        names = tuple([_label(each) for each in first])
+        keys = tuple([_name(each) for each in given])
+        parameter_symbols = tuple([_parameter(sp, t, each, function) for each in given])
         symbols = (first, others, parameter_symbols)
         walk = Symbols(nodes, first, others, parameter_symbols).node
     for what, each in (("coordinates", names), ("parameters", keys)):
@@ -91,10 +92,13 @@ def described(
     shared = [key for key in keys if key in names]
     if shared:
         raise InvalidInput("parameters", f"{shared[0]!r} is a coordinate; give the parameter another name")
-    all_first, all_second, all_parameters = ((), (), ()) if symbols is None else symbols
-    for place, symbol in enumerate(all_second):
-        if symbol in (*all_first, *all_second[:place], *all_parameters, time._sympy_()):
-            raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
+    if symbols is not None:
+        all_first, all_second, all_parameters = symbols
+        taken = {*all_first, *all_parameters, time._sympy_()}
+        for symbol in all_second:
+            if symbol in taken:
+                raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
+            taken.add(symbol)
     root = walk(argument, function)
     forces = {} if further.get("forces") is None else further["forces"]
     if not isinstance(forces, Mapping):
@@ -144,10 +148,10 @@ def _label(coordinate: Any) -> str:
     return name or str(coordinate)
 
 
-def _coordinate(sp: Any, value: Any) -> Any:
-    if isinstance(value, sp.Symbol) and value != time._sympy_():
+def _coordinate(sp: Any, t: Any, value: Any) -> Any:
+    if isinstance(value, sp.Symbol) and value != t:
         return value
-    if isinstance(value, sp.core.function.AppliedUndef) and value.args == (time._sympy_(),):
+    if isinstance(value, sp.core.function.AppliedUndef) and value.args == (t,):
         return value
     of_another = isinstance(value, sp.core.function.AppliedUndef) and len(value.args) == 1
     cure = ", which is no function of the time: that is vv.time, Symbol('t') without assumptions" if of_another else ""
@@ -157,13 +161,13 @@ def _coordinate(sp: Any, value: Any) -> Any:
     )
 
 
-def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...]:
+def _second(sp: Any, t: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...]:
     """Give the symbols of velocities, or of momenta."""
     argument = _SECOND_ARGUMENT[kind]
     if second is None:
         if kind == "lagrangian" and not any(isinstance(each, sp.Symbol) for each in first):
             # What each.diff(t) gives, which is slow to find that there is nothing to carry out.
-            return tuple(sp.Derivative(each, time._sympy_(), evaluate=False) for each in first)
+            return tuple(sp.Derivative(each, t, evaluate=False) for each in first)
         what = "velocities of coordinates that are symbols" if kind == "lagrangian" else "momenta"
         raise InvalidInput(argument, f"expected the {what}, one for each of {list(first)}")
     listed = tuple(_listed(argument, second))
@@ -175,9 +179,9 @@ def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[An
     return listed
 
 
-def _parameter(sp: Any, key: Any, function: Any) -> Any:
+def _parameter(sp: Any, t: Any, key: Any, function: Any) -> Any:
     """Give the symbol of a parameter; a name means the symbol of that name in the function."""
-    if key == time._sympy_() or key == "t":
+    if key == t or key == "t":
         raise InvalidInput("parameters", "t is the time; give the parameter another name")
     if not isinstance(key, str):
         return key

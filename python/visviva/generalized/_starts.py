@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
@@ -68,8 +69,12 @@ def is_beyond_domain(system: States, columns: NDArray[np.float64]) -> NDArray[np
     An energy alone may be infinite: of numbers whose squares are beyond the range.
     """
     n = len(system.coordinates)
+    has_momenta = system._source.kind == "lagrangian"
+    if len(columns) == 1:  # arithmetic of numbers, a tenth of that of arrays of one
+        row = columns[0].tolist()
+        return np.array([isnan(row[n]) or (has_momenta and not all(map(isfinite, row[:n])))])
     beyond: NDArray[np.bool_] = np.isnan(columns[:, n])
-    if system._source.kind == "lagrangian":
+    if has_momenta:
         beyond |= ~np.isfinite(columns[:, :n]).all(axis=1)
     return beyond
 

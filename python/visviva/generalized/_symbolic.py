@@ -198,17 +198,23 @@ class Symbols:
         return place
 
     def _new_node(self, argument: str, tree: Any) -> int:
-        sp, nodes = self._sympy, self._nodes
+        sp, nodes, known = self._sympy, self._nodes, self._known
+        if tree.is_Add or tree.is_Mul or tree.is_Pow:
+            operation = "sum" if tree.is_Add else "product" if tree.is_Mul else "power"
+            places = []
+            for part in tree.args:  # as `_walk`, which would be called for every part, most of them known
+                place = known.get(part)
+                if place is None:
+                    place = known[part] = self._new_node(argument, part)
+                places.append(place)
+            return nodes.add(operation, tuple(places))
         if tree.is_Number or tree.is_NumberSymbol:
-            value = complex(tree)
+            value = _number_of(tree)
             if value.imag or value.real != value.real or abs(value.real) == float("inf"):
                 raise InvalidInput(argument, f"expected finite real numbers, got {tree}")
             return nodes.constant(value.real)
         if tree is sp.I:
             raise InvalidInput(argument, "expected real numbers, got I in it")
-        if tree.is_Add or tree.is_Mul or tree.is_Pow:
-            operation = "sum" if tree.is_Add else "product" if tree.is_Mul else "power"
-            return nodes.add(operation, tuple(self._walk(argument, part) for part in tree.args))
         if tree.is_Symbol and tree.name == self._time.name:
             # The time, whatever is assumed of it.
             return self._known[self._time]
@@ -261,6 +267,12 @@ class Symbols:
                 argument, f"{tree} is in it, but {inner} is not among the coordinates {list(self._coordinates)}; add it"
             )
         return InvalidInput(argument, f"{tree} is not carried out; call its doit() first")
+
+
+def _number_of(tree: Any) -> complex:
+    """Give the number that a tree without symbols is; one that a float holds exactly in a tenth of the time."""
+    held = tree.is_Float or (tree.is_Rational and abs(tree.p) < 2**53 and tree.q in (1, 2, 4, 8))
+    return complex(float(tree)) if held else complex(tree)
 
 
 def trees(
