@@ -87,9 +87,11 @@ def test_a_drive_as_a_formula_is_the_driven_force(t0: float) -> None:
 @pytest.mark.parametrize(
     ("force", "method"),
     [
-        (lambda r, v, t: r[0] ** 6 + r[1] ** 2 * np.sin(3.0 * r[0]), "taylor"),
+        (lambda r, v, t: r[0] ** 4 + r[1] ** 2 * np.sin(3.0 * r[0]), "taylor"),
         (lambda r, v, t: r[0] ** 2 * np.cos(5.0 * t + r[1]), "taylor"),
         (lambda r, v, t: r[0] ** 2 / 3.0, "taylor"),
+        # In steep wells series choose their steps too late.
+        (lambda r, v, t: r[0] ** 12, "dop853"),
         (lambda r, v, t: np.exp(-((r[0] - 3.0) ** 2)), "dop853"),
         (lambda r, v, t: 1.0 / (r[0] ** 2 + 1e-6), "dop853"),
         (lambda r, v, t: r[0] * np.exp(-((t - 5.0) ** 2)), "dop853"),
@@ -101,6 +103,27 @@ def test_auto_takes_series_where_they_tell_all(force: object, method: str) -> No
     assert scene.plan(t=1.0).method == method
     # Beside forces without series none are taken.
     assert vv.Scene(ION, vv.ExpressionForce(potential=force), vv.QuadraticDrag(0.1)).plan(t=1.0).method == "dop853"
+
+
+@pytest.mark.parametrize("force", [(0, 0, lambda x, t: t), (1, 0, lambda x, t: x), (1, 0, lambda x, t: x**2 + t**3)])
+def test_a_motion_that_is_a_polynomial_of_time_is_exact(force: tuple[object, ...]) -> None:
+    """Its last coefficient was taken for the error: 40 000 steps."""
+    third = force[2]
+    assert callable(third)
+    ramp = vv.ExpressionForce(force=lambda r, v, t: (force[0], 0, third(r[0], t)))
+    body = vv.Particles([1.0], [[0.5, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
+    for method in ("auto", "taylor"):
+        out = vv.Scene(body, ramp).run(t=4.0, method=method)
+        # No step is longer than 1/128 of a run in which something may hide.
+        assert out.stats.steps <= 140
+        t = 4.0
+        if force[0] == 0:
+            wanted = t**3 / 6
+        else:
+            x = np.polynomial.Polynomial([0.5, 1.0, 0.5])
+            z = third(x, np.polynomial.Polynomial([0.0, 1.0])).integ(2)
+            wanted = z(t)
+        assert out.position[-1, 0, 2] == pytest.approx(wanted, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize("threads", [1, 3])

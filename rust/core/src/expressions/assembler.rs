@@ -4,7 +4,7 @@ use super::code::{Code, Parts, word};
 use super::graph::Graph;
 use super::program::{self, LinearSystem, Operation, Output, Program, Value};
 use crate::error::{Error, Result};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Values that live to the end.
 const FOREVER: usize = usize::MAX;
@@ -30,7 +30,7 @@ struct Assembler {
     free: Vec<u16>,
     count: usize,
     constants: Vec<f64>,
-    constant_places: HashMap<u64, u16>,
+    constant_places: FxHashMap<u64, u16>,
 }
 
 impl Assembler {
@@ -56,7 +56,7 @@ impl Assembler {
             free: vec![],
             count: inputs,
             constants: vec![],
-            constant_places: HashMap::new(),
+            constant_places: FxHashMap::default(),
         }
     }
 

@@ -5,7 +5,7 @@
 
 use super::function::Function;
 use super::graph::{Graph, Id, Node, number};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 impl Graph {
     /// What a node is made of, each with the derivative with respect to it; nodes that are kept are not taken apart.
@@ -176,7 +176,7 @@ impl Graph {
     /// The derivatives of an expression with respect to some of the nodes it is made of.
     pub fn gradient(&mut self, root: Id, variables: &[Id]) -> Vec<Id> {
         let order = self.reachable(&[root]);
-        let mut active: HashMap<Id, Vec<(f64, Id)>> = variables.iter().map(|&id| (id, vec![])).collect();
+        let mut active: FxHashMap<Id, Vec<(f64, Id)>> = variables.iter().map(|&id| (id, vec![])).collect();
         for &id in &order {
             let mut depends = false;
             super::walk::for_each_argument(self.node(id), |argument| {
@@ -210,8 +210,8 @@ impl Graph {
     }
 
     /// The derivatives of expressions along a direction: what some nodes change by.
-    pub fn tangent(&mut self, roots: &[Id], direction: &HashMap<Id, Id>) -> Vec<Id> {
-        let mut change: HashMap<Id, Id> = HashMap::new();
+    pub fn tangent(&mut self, roots: &[Id], direction: &FxHashMap<Id, Id>) -> Vec<Id> {
+        let mut change: FxHashMap<Id, Id> = FxHashMap::default();
         for id in self.reachable(roots) {
             if let Some(&seed) = direction.get(&id) {
                 let _ = change.insert(id, seed);

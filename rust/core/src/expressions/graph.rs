@@ -7,7 +7,7 @@ use super::function::{Function, Parity};
 use super::identity;
 use super::walk::for_each_argument;
 use crate::numerics::functions;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The number of a node; what it is made of has smaller numbers.
 pub type Id = u32;
@@ -60,7 +60,7 @@ const MULTIPLIED: f64 = 64.0;
 pub struct Graph {
     nodes: Vec<Node>,
     dependence: Vec<Dependence>,
-    ids: HashMap<Node, Id>,
+    ids: FxHashMap<Node, Id>,
 }
 
 /// The number that these are the bits of; there is one zero.

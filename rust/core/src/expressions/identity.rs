@@ -2,7 +2,7 @@
 
 use super::function::Function;
 use super::graph::{Graph, Id, Node};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Products of more factors are not looked into.
 const MOST_FACTORS: usize = 16;
@@ -39,7 +39,7 @@ pub(super) fn squares_of_sine_and_cosine(graph: &mut Graph, terms: &[(Id, f64)])
     if !terms.iter().any(|&(id, _)| matches!(graph.node(id), Node::Product(..))) {
         return None;
     }
-    let mut sines: HashMap<(u64, Id, Vec<Id>), usize> = HashMap::new();
+    let mut sines: FxHashMap<(u64, Id, Vec<Id>), usize> = FxHashMap::default();
     for (index, &(id, coefficient)) in terms.iter().enumerate() {
         if let Some((argument, rest)) = squared(graph, id, Function::Sin) {
             let _ = sines.insert((coefficient.to_bits(), argument, rest), index);

@@ -31,12 +31,18 @@ pub fn calls(graph: &Graph, roots: &[Id]) -> Vec<(Function, Id, Id)> {
 /// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree and waves that stand in
 /// space.
 pub fn may_hide(graph: &Graph, roots: &[Id]) -> bool {
-    let degrees = degrees(graph);
+    is_steep(graph, roots, false)
+}
+
+/// Whether some of these expressions are of a higher degree than [`STEEPEST`], or no polynomials.
+fn is_steep(graph: &Graph, roots: &[Id], waves_of_time: bool) -> bool {
+    let degrees = degrees(graph, waves_of_time);
     graph.reachable(roots).into_iter().any(|id| degrees[id as usize] > STEEPEST)
 }
 
-/// The degree of every node in places, velocities and times; infinite of what is no polynomial of them and of their waves.
-fn degrees(graph: &Graph) -> Vec<f64> {
+/// The degree of every node in places, velocities and times; infinite of what is no polynomial of them and of their waves, or
+/// of a wave that the time moves unless those count.
+fn degrees(graph: &Graph, waves_of_time: bool) -> Vec<f64> {
     let changes = |id: Id| graph.dependence(id) > Dependence::Parameters;
     let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
     let mut degrees: Vec<f64> = Vec::with_capacity(graph.nodes().len());
@@ -48,7 +54,9 @@ fn degrees(graph: &Graph) -> Vec<f64> {
             Node::Sum(_, terms) => terms.iter().map(|&(_, id)| of(id)).fold(0.0, f64::max),
             Node::Product(a, b) => of(*a) + of(*b),
             Node::Quotient(a, b) if !changes(*b) => of(*a),
-            Node::Call(Function::Sin | Function::Cos, argument) if !of_time(*argument) => of(*argument),
+            Node::Call(Function::Sin | Function::Cos, argument) if waves_of_time || !of_time(*argument) => {
+                of(*argument)
+            }
             Node::Call(_, argument) | Node::Power(argument, _) if !changes(*argument) => 0.0,
             Node::Angle(a, b) if !changes(*a) && !changes(*b) => 0.0,
             Node::Quotient(..) | Node::Angle(..) | Node::Call(..) | Node::Power(..) => f64::INFINITY,
@@ -58,29 +66,26 @@ fn degrees(graph: &Graph) -> Vec<f64> {
     degrees
 }
 
-/// Whether a Taylor series tells all of these expressions, wherever it is made: of sums, products, whole powers, sines and
-/// cosines, whose coefficients grow until a fast wave is seen, however weak. What is made of exp may be nothing in all of them.
+/// Whether a Taylor series tells all of these expressions, wherever it is made, and before steps are long: of polynomials of low
+/// degree and of waves, whose coefficients grow until a fast one is seen, however weak.
 pub fn is_entire(graph: &Graph, roots: &[Id]) -> bool {
-    all_entire(graph, roots, |id| graph.dependence(id) > Dependence::Parameters)
+    !is_steep(graph, roots, true)
 }
 
-/// The same of what the time enters in them.
+/// Whether a series tells all of what the time enters in them: of sums, products, whole powers, sines and cosines. What is made
+/// of exp may be nothing in all coefficients.
 pub fn is_entire_in_time(graph: &Graph, roots: &[Id]) -> bool {
-    all_entire(graph, roots, |id| graph.any(&[id], |node| matches!(node, Node::Time)))
-}
-
-/// Whether every expression that changes is made of others in such a way.
-fn all_entire(graph: &Graph, roots: &[Id], changes: impl Fn(Id) -> bool) -> bool {
+    let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
     graph.reachable(roots).into_iter().all(|id| match *graph.node(id) {
         Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) | Node::Time => true,
         Node::Sum(..) | Node::Product(..) | Node::Call(Function::Sin | Function::Cos, _) => true,
-        Node::Quotient(_, below) => !changes(below),
+        Node::Quotient(_, below) => !of_time(below),
         Node::Power(base, exponent) => {
             let exponent = f64::from_bits(exponent);
-            (exponent >= 0.0 && exponent.fract() == 0.0) || !changes(base)
+            (exponent >= 0.0 && exponent.fract() == 0.0) || !of_time(base)
         }
-        Node::Call(_, argument) => !changes(argument),
-        Node::Angle(y, x) => !changes(y) && !changes(x),
+        Node::Call(_, argument) => !of_time(argument),
+        Node::Angle(y, x) => !of_time(y) && !of_time(x),
     })
 }
 
@@ -140,9 +145,12 @@ mod tests {
         let both = |graph: &Graph, id: Id| (is_entire(graph, &[id]), is_entire_in_time(graph, &[id]));
         let phase = graph.sum(0.0, &[(3.0, x), (-1e6, t)]);
         let wave = graph.call(Function::Cos, phase);
-        let sixth = graph.power(x, 6.0);
-        let driven = graph.product(&[wave, sixth]);
+        let cube = graph.power(x, 3.0);
+        let driven = graph.product(&[wave, cube]);
         assert_eq!(both(&graph, driven), (true, true));
+        // In steep wells series choose their steps too late.
+        let steep = graph.power(x, 11.0);
+        assert_eq!(both(&graph, steep), (false, true));
         // Of places there may be anything beside such drives.
         let inverse = graph.power(x, -3.0);
         let far = graph.product(&[wave, inverse]);

@@ -7,7 +7,7 @@ use super::function::Function;
 use super::graph::{Dependence, Graph, Id, Node, number};
 use super::walk::for_each_argument;
 use crate::error::{Error, Result};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The number of a value.
 pub(super) type Value = u32;
@@ -136,10 +136,10 @@ pub(super) struct Program {
 struct Writer<'a> {
     graph: &'a Graph,
     program: Program,
-    uses: HashMap<Id, u32>,
-    values: HashMap<Id, Value>,
+    uses: FxHashMap<Id, u32>,
+    values: FxHashMap<Id, Value>,
     /// Sines and cosines that are found together.
-    pairs: HashMap<Value, (Value, Value)>,
+    pairs: FxHashMap<Value, (Value, Value)>,
 }
 
 /// A program of a graph's expressions, of so many numbers of the state and parameters.
@@ -154,7 +154,7 @@ pub(super) fn write(
 ) -> Result<Program> {
     let nodes = outputs.iter().filter_map(Output::node);
     let roots: Vec<Id> = systems.iter().flat_map(LinearSystem::nodes).chain(nodes).collect();
-    let mut uses: HashMap<Id, u32> = HashMap::new();
+    let mut uses: FxHashMap<Id, u32> = FxHashMap::default();
     for id in graph.reachable(&roots) {
         for_each_argument(graph.node(id), |argument| *uses.entry(argument).or_default() += 1);
     }
@@ -170,7 +170,8 @@ pub(super) fn write(
         body: vec![],
         outputs: vec![],
     };
-    let mut writer = Writer { graph, program, uses, values: HashMap::new(), pairs: HashMap::new() };
+    let mut writer =
+        Writer { graph, program, uses, values: FxHashMap::default(), pairs: FxHashMap::default() };
     let mut solved = Vec::new();
     for system in systems {
         let mut values = system.nodes().map(|id| writer.value(id)).collect::<Result<Vec<_>>>()?;

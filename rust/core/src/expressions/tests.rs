@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::program::Output;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use proptest::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 const VARIABLES: usize = 3;
@@ -80,7 +80,7 @@ proptest! {
         let root = drawn(&mut graph, &choices);
         let variables: Vec<Id> = (0..VARIABLES as u32).map(|i| graph.variable(i)).collect();
         let gradient = graph.gradient(root, &variables);
-        let seeds: HashMap<Id, Id> =
+        let seeds: FxHashMap<Id, Id> =
             variables.iter().zip(direction).map(|(&id, x)| (id, graph.constant(x))).collect();
         let tangent = graph.tangent(&[root], &seeds)[0];
         let mut roots = vec![root, tangent];

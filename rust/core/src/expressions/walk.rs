@@ -3,7 +3,7 @@
 //! The one idea: what a node is made of has smaller numbers, so in ascending order all arguments come first.
 
 use super::graph::{Graph, Id, Node, number};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 impl Graph {
     /// The nodes that these are made of, and they themselves, ascending.
@@ -24,8 +24,8 @@ impl Graph {
     }
 
     /// The same expressions with other nodes in the place of some.
-    pub fn substitute(&mut self, roots: &[Id], replaced: &HashMap<Id, Id>) -> Vec<Id> {
-        let mut new: HashMap<Id, Id> = replaced.clone();
+    pub fn substitute(&mut self, roots: &[Id], replaced: &FxHashMap<Id, Id>) -> Vec<Id> {
+        let mut new: FxHashMap<Id, Id> = replaced.clone();
         for id in self.reachable(roots) {
             if new.contains_key(&id) {
                 continue;

@@ -7,7 +7,7 @@
 
 use crate::expressions::graph::Dependence;
 use crate::expressions::{Graph, Id, Node};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// With more coordinates there are more symbols than a sweep has operations.
 const MOST: usize = 4;
@@ -27,13 +27,13 @@ pub(super) fn free(
         return None;
     }
     let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
-    let at_rest: HashMap<Id, Id> = v.iter().map(|&v| (v, zero)).collect();
+    let at_rest: FxHashMap<Id, Id> = v.iter().map(|&v| (v, zero)).collect();
     let roots: Vec<Id> = momenta.iter().copied().chain([function]).collect();
     let rest = graph.substitute(&roots, &at_rest);
     let (potential, linear) = (rest[n], &rest[..n]);
 
-    let time = HashMap::from([(graph.time(), one)]);
-    let along: Vec<HashMap<Id, Id>> = q.iter().map(|&q| HashMap::from([(q, one)])).collect();
+    let time = FxHashMap::from_iter([(graph.time(), one)]);
+    let along: Vec<FxHashMap<Id, Id>> = q.iter().map(|&q| FxHashMap::from_iter([(q, one)])).collect();
     let of_linear: Vec<Vec<Id>> = along.iter().map(|along| graph.tangent(linear, along)).collect();
     let of_mass: Vec<Vec<Id>> = along.iter().map(|along| graph.tangent(&entries, along)).collect();
     let (linear_in_time, mass_in_time) = (graph.tangent(linear, &time), graph.tangent(&entries, &time));
@@ -87,10 +87,10 @@ mod tests {
         let momenta = &slopes[2..];
         let mut mass = vec![vec![]; 2];
         for velocity in [v, w] {
-            let column = graph.tangent(momenta, &HashMap::from([(velocity, one)]));
+            let column = graph.tangent(momenta, &FxHashMap::from_iter([(velocity, one)]));
             (0..2).for_each(|i| mass[i].push(column[i]));
         }
-        let inertia = graph.tangent(momenta, &HashMap::from([(x, v), (y, w), (t, one)]));
+        let inertia = graph.tangent(momenta, &FxHashMap::from_iter([(x, v), (y, w), (t, one)]));
         let swept = (0..2).map(|i| graph.subtract(slopes[i], inertia[i])).collect();
         let found = free(&mut graph, function, momenta, &mass, (&[x, y], &[v, w]));
         (graph, swept, found)

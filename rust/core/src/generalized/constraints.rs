@@ -7,7 +7,7 @@ use super::model::Source;
 use crate::error::{Error, Result};
 use crate::expressions::program::LinearSystem;
 use crate::expressions::{Graph, Id, Node};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Refuses what is no constraint of its kind: it would be kept, and mean something else.
 ///
@@ -53,7 +53,7 @@ pub(super) fn bordered(
     source: &mut Source,
     mass: &[Vec<Id>],
     mut right: Vec<Id>,
-    motion: &HashMap<Id, Id>,
+    motion: &FxHashMap<Id, Id>,
 ) -> LinearSystem {
     let (q, v) = source.halves();
     let graph = &mut source.graph;

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::expressions::Id;
 use crate::expressions::program::{LinearSystem, Output};
 use crate::ode::system::Form;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Derives the equations of motion.
 ///
@@ -28,7 +28,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
 
     let mut mass = vec![vec![graph.constant(0.0); n]; n];
     for j in 0..n {
-        let column = graph.tangent(&momenta[j..], &HashMap::from([(v[j], one)]));
+        let column = graph.tangent(&momenta[j..], &FxHashMap::from_iter([(v[j], one)]));
         for i in j..n {
             mass[i][j] = column[i - j];
             mass[j][i] = column[i - j];
@@ -38,7 +38,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
         }
     }
 
-    let mut motion: HashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
+    let mut motion: FxHashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
     let _ = motion.insert(graph.time(), one);
     let inertia = graph.tangent(&momenta, &motion);
     let mut free: Vec<Id> = (0..n).map(|i| graph.subtract(slopes[i], inertia[i])).collect();

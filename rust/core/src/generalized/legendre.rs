@@ -7,7 +7,7 @@ use super::elimination::solved;
 use super::model::{Kind, Source};
 use crate::error::{Error, Result};
 use crate::expressions::{Graph, Id};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Which of the numbers of a state an expression has.
 fn has_any(graph: &Graph, root: Id, numbers: &[Id]) -> bool {
@@ -19,11 +19,11 @@ fn inverted(graph: &mut Graph, function: Id, numbers: &[Id], conjugates: &[Id]) 
     let one = graph.constant(1.0);
     let zero = graph.constant(0.0);
     let derivatives = graph.gradient(function, numbers);
-    let still: HashMap<Id, Id> = numbers.iter().map(|&id| (id, zero)).collect();
+    let still: FxHashMap<Id, Id> = numbers.iter().map(|&id| (id, zero)).collect();
     let at_rest = graph.substitute(&derivatives, &still);
     let mut matrix = vec![vec![zero; numbers.len()]; numbers.len()];
     for (j, &number) in numbers.iter().enumerate() {
-        let column = graph.tangent(&derivatives, &HashMap::from([(number, one)]));
+        let column = graph.tangent(&derivatives, &FxHashMap::from_iter([(number, one)]));
         for (i, &entry) in column.iter().enumerate() {
             if has_any(graph, entry, numbers) {
                 return Err(Error::invalid(
@@ -62,7 +62,7 @@ pub fn transformed(source: &Source) -> Result<Source> {
     let graph = &mut source.graph;
     // The conjugates are where the second half was: the same nodes with another meaning.
     let inverse = inverted(graph, source.function, &second, &second)?;
-    let replaced: HashMap<Id, Id> = second.iter().copied().zip(inverse.iter().copied()).collect();
+    let replaced: FxHashMap<Id, Id> = second.iter().copied().zip(inverse.iter().copied()).collect();
     let roots: Vec<Id> = [source.function].into_iter().chain(source.forces.iter().copied()).collect();
     let moved = graph.substitute(&roots, &replaced);
     let mut terms = vec![(-1.0, moved[0])];
@@ -83,7 +83,7 @@ pub fn by_degree(source: &mut Source) -> [Id; 3] {
     let (_, v) = source.halves();
     let graph = &mut source.graph;
     let zero = graph.constant(0.0);
-    let still: HashMap<Id, Id> = v.iter().map(|&id| (id, zero)).collect();
+    let still: FxHashMap<Id, Id> = v.iter().map(|&id| (id, zero)).collect();
     let momenta = graph.gradient(source.function, &v);
     let mut roots = vec![source.function];
     roots.extend(&momenta);
@@ -118,10 +118,10 @@ pub fn routhian(source: &Source, cyclic: &[usize]) -> Result<(Source, Vec<Id>)> 
     let kept: Vec<usize> = (0..n).filter(|i| !cyclic.contains(i)).collect();
     let m = kept.len() as u32;
     // Velocities of cyclic coordinates by their momenta, then new numbers for what is kept.
-    let out: HashMap<Id, Id> = replaced.iter().copied().zip(velocities.iter().copied()).collect();
+    let out: FxHashMap<Id, Id> = replaced.iter().copied().zip(velocities.iter().copied()).collect();
     let mut roots = graph.substitute(&[source.function], &out);
     roots.extend(&velocities);
-    let mut renamed = HashMap::new();
+    let mut renamed = FxHashMap::default();
     for (k, &i) in kept.iter().enumerate() {
         let (place, velocity) = (graph.variable(k as u32), graph.variable(m + k as u32));
         let _ = renamed.insert(q[i], place);

@@ -10,7 +10,7 @@ use super::model::{Kind, Model};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Graph, Id, Machine, Node};
 use nalgebra::{DMatrix, DVector};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Newton's steps to an equilibrium.
@@ -73,7 +73,7 @@ impl Linear {
         for numbers in [&q, &v] {
             let mut columns = Vec::new();
             for &number in numbers {
-                columns.push(graph.tangent(&model.right, &HashMap::from([(number, one)])));
+                columns.push(graph.tangent(&model.right, &FxHashMap::from_iter([(number, one)])));
             }
             for i in 0..n {
                 outputs.extend(columns.iter().map(|column| column[i]));

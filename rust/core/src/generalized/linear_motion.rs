@@ -18,7 +18,7 @@ use crate::numerics::matrix_exponential::{MatrixExponential, elapsed};
 use crate::numerics::real::Real;
 use crate::ode::run::Ending;
 use crate::parallel::Ticker;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Linear equations of 2·coordinates numbers.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ impl LinearMotion {
         let one = graph.constant(1.0);
         for index in 0..model.numbers() as u32 {
             let number = graph.variable(index);
-            let column = graph.tangent(&right, &HashMap::from([(number, one)]));
+            let column = graph.tangent(&right, &FxHashMap::from_iter([(number, one)]));
             if varies(&graph, &column) {
                 return None;
             }

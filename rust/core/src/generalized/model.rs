@@ -9,7 +9,7 @@ use crate::expressions::assembler::compile;
 use crate::expressions::program::{LinearSystem, Output};
 use crate::expressions::{Code, Graph, Id, Series};
 use crate::ode::system::{Form, Needs};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Of which kind the function is that says all.
@@ -162,7 +162,7 @@ impl Model {
         let (first, second) = self.source.halves();
         let graph = &mut self.source.graph;
         let (time, one) = (graph.time(), graph.constant(1.0));
-        let mut motion: HashMap<Id, Id> = HashMap::from([(time, one)]);
+        let mut motion: FxHashMap<Id, Id> = FxHashMap::from_iter([(time, one)]);
         let (mut slopes, mut rates) = (vec![], vec![]);
         match self.form {
             Form::FirstOrder(_) => {

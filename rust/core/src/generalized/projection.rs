@@ -16,7 +16,7 @@ use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::System;
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Newton's steps after a step of a run: from errors of 1e-9 two would do.
@@ -67,7 +67,7 @@ impl Projection {
         let graph = &mut source.graph;
         let mut rows: Vec<Vec<Id>> = holonomic.iter().map(|&g| graph.gradient(g, &q)).collect();
         let (one, time) = (graph.constant(1.0), graph.time());
-        let mut motion: HashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
+        let mut motion: FxHashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
         let _ = motion.insert(time, one);
         let mut rates = graph.tangent(&holonomic, &motion);
         rates.extend(&nonholonomic);

@@ -10,7 +10,7 @@ use crate::expressions::assembler::compile;
 use crate::expressions::program::Output;
 use crate::expressions::{Graph, Id};
 use crate::ode::system::Form;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Coordinates of the largest system: Φ has the square of twice as many numbers.
@@ -58,7 +58,7 @@ pub fn variational(model: &Model) -> Result<Model> {
     let entries: Vec<Id> = (0..(n * n) as u32).map(|k| graph.variable(n as u32 + k)).collect();
     let mut columns = Vec::with_capacity(n);
     for j in 0..n {
-        let direction: HashMap<Id, Id> = (0..n).map(|i| (state[i], entries[i * n + j])).collect();
+        let direction: FxHashMap<Id, Id> = (0..n).map(|i| (state[i], entries[i * n + j])).collect();
         columns.push(graph.tangent(&rates, &direction));
     }
     for i in 0..n {

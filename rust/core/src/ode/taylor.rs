@@ -123,15 +123,14 @@ impl<S: Controlled> TaylorStep<S> {
     /// One over the longest step that the coefficients allow, in their unit of time.
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut highest = self.jet.order;
-        // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
-        // numbers are measured by how far they go, one that ends with half of all coefficients.
+        // Where two coefficients vanish, those before them tell; a motion that ends with half of all coefficients is exact.
         if norm.blocks.is_empty() {
             let Jet { q, len, .. } = &self.jet;
             let (tolerance, times, orders) = (&norm.rtol, REFINEMENTS + 1, (highest, highest / 2));
             return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
         }
         let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
-        let last = 3;
+        let last = (highest / 2).max(3);
         while highest - 2 > last {
             highest -= 2;
             let untold = inverse.less_equal(S::zero());

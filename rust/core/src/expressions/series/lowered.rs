@@ -6,7 +6,7 @@ use super::super::program::{Operation, Program, Value};
 use super::expansion::inverse;
 use super::recurrence::{Entry, Place, Recurrence, Recurrences};
 use super::{ORDERS, Series};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The recurrences of a program.
 pub(super) fn lowered(program: &Program) -> Series {
@@ -16,10 +16,10 @@ pub(super) fn lowered(program: &Program) -> Series {
         values: vec![Entry { place: 0, varies: false }; constants],
         constants: 0,
         series: constants,
-        slopes: HashMap::new(),
+        slopes: FxHashMap::default(),
         radicands: vec![],
         made: vec![],
-        lines: HashMap::new(),
+        lines: FxHashMap::default(),
         scratch: 0,
     };
     // Parameters are the first constants, the state and the time the first series.
@@ -58,12 +58,12 @@ struct Lowering {
     constants: usize,
     series: usize,
     /// The slopes of the series that have them.
-    slopes: HashMap<Place, Place>,
+    slopes: FxHashMap<Place, Place>,
     /// What stands below roots and broken powers.
     radicands: Vec<Place>,
     made: Vec<Recurrence>,
     /// Of the series that are c₀ + c x: c and x.
-    lines: HashMap<Place, (f64, Place)>,
+    lines: FxHashMap<Place, (f64, Place)>,
     scratch: usize,
 }
 

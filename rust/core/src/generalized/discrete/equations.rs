@@ -4,7 +4,7 @@ use super::Method;
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Id};
 use crate::generalized::model::{Kind, Model};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// The codes of a Lagrangian for a method. The forces are f = ∂L/∂q + Q − ∂R/∂q̇, the momenta p = ∂L/∂q̇.
@@ -59,7 +59,8 @@ impl Equations {
         rates.extend(&model.conjugates);
         let (mut slopes, mut places): (Vec<Id>, _) = (vec![], vec![]);
         for (column, &number) in q.iter().chain(&v).enumerate() {
-            for (row, slope) in graph.tangent(&rates, &HashMap::from([(number, one)])).into_iter().enumerate()
+            for (row, slope) in
+                graph.tangent(&rates, &FxHashMap::from_iter([(number, one)])).into_iter().enumerate()
             {
                 if !graph.is_zero(slope) {
                     slopes.push(slope);
@@ -68,7 +69,7 @@ impl Equations {
             }
         }
         let holonomic = model.source.holonomic.clone();
-        let mut motion: HashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
+        let mut motion: FxHashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
         let _ = motion.insert(time, one);
         let mut constraints = holonomic.clone();
         constraints.extend(graph.tangent(&holonomic, &motion));

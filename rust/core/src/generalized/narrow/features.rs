@@ -10,7 +10,7 @@ use crate::expressions::narrow::calls;
 use crate::expressions::program::{LinearSystem, Output};
 use crate::expressions::{Code, Id, Node};
 use crate::generalized::model::Model;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Where a function of an argument is as good as constant.
@@ -101,7 +101,7 @@ impl Features {
         let scaled = |(index, argument): (usize, &Id)| graph.scale(factor(index), *argument);
         let arguments: Vec<Id> = arguments.iter().enumerate().map(scaled).collect();
         let (numbers, parameters) = (model.numbers, model.source.parameters);
-        let mut motion: HashMap<Id, Id> = HashMap::new();
+        let mut motion: FxHashMap<Id, Id> = FxHashMap::default();
         for index in 0..numbers as u32 {
             let rate = graph.variable(numbers as u32 + index);
             let _ = motion.insert(graph.variable(index), rate);
@@ -127,11 +127,11 @@ impl Features {
 fn with_values(model: &mut Model, roots: &[Id], calls: &[Id]) -> Result<Code> {
     let numbers = model.numbers;
     let graph = &mut model.source.graph;
-    let mut replaced: HashMap<Id, Id> = HashMap::new();
+    let mut replaced: FxHashMap<Id, Id> = FxHashMap::default();
     for (index, &call) in calls.iter().enumerate() {
         let _ = replaced.insert(call, graph.variable((numbers + index) as u32));
     }
-    let made: HashMap<Id, Id> = roots.iter().copied().zip(graph.substitute(roots, &replaced)).collect();
+    let made: FxHashMap<Id, Id> = roots.iter().copied().zip(graph.substitute(roots, &replaced)).collect();
     let of = |id: &Id| made.get(id).copied().unwrap_or(*id);
     let systems: Vec<LinearSystem> = model
         .systems
