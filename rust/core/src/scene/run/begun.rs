@@ -74,10 +74,15 @@ impl Begun {
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let plan = Plan::of(scene, request, neighbors, ticker)?;
-        let groups = patterns(scene, &plan, ticker)?;
-        let plans = groups.iter().flatten().map(|(_, part)| Plan::of(part, request, neighbors, ticker));
-        let plans = plans.collect::<Result<_>>()?;
-        Ok(Self { start: None, plan, groups, plans })
+        let Some(groups) = patterns(scene, &plan, ticker)? else {
+            return Ok(Self { start: None, plan, groups: None, plans: Vec::new() });
+        };
+        let mut apart = Vec::with_capacity(groups.len());
+        for group in groups {
+            planned_apart(group, (request, neighbors), &mut apart, ticker)?;
+        }
+        let (groups, plans) = apart.into_iter().unzip();
+        Ok(Self { start: None, plan, groups: Some(groups), plans })
     }
 
     /// The scene that is planned from.
@@ -98,6 +103,25 @@ impl Begun {
                 .collect(),
         }
     }
+}
+
+/// Plans copies of one pattern. Their own plan may be by another method than that of all, and tell more of them apart.
+fn planned_apart(
+    (members, part): Pattern,
+    asked: (&Request, bool),
+    into: &mut Vec<(Pattern, Plan)>,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    let plan = Plan::of(&part, asked.0, asked.1, ticker)?;
+    let Some(groups) = patterns(&part, &plan, ticker)?.filter(|groups| groups.len() > 1) else {
+        into.push(((members, part), plan));
+        return Ok(());
+    };
+    for (own, part) in groups {
+        let members = own.iter().map(|&copy| members[copy]).collect();
+        planned_apart((members, part), asked, into, ticker)?;
+    }
+    Ok(())
 }
 
 impl Kept {
