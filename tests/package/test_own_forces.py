@@ -264,3 +264,19 @@ def test_forces_on_rigid_bodies_are_those_of_the_scene() -> None:
     for which in (torque, "AppliedTorque"):
         with pytest.raises(vv.InvalidInput, match="the same in all copies; run a scene for each"):
             vv.Scene(rod, torque).ensemble(parameters={which: {"torque": [[0, 0, 1.0], [0, 0, 2.0]]}})
+
+
+def test_copies_that_lose_a_force_are_planned_apart_by_their_own_numbers() -> None:
+    """Without the charge two of them are gravity alone, and series know one G: one moved with that of the other."""
+    bodies = vv.Particles(
+        [1.0, 1.0, 0.5], [[1.0, 0, 0], [-1.0, 0, 0], [0, 3.0, 0]], [[0, 0.4, 0], [0, -0.4, 0], [0.3, 0, 0]]
+    )
+
+    def scene(constant: float, charge: float) -> vv.Scene:
+        return vv.Scene(bodies, vv.Gravity(constant), vv.UniformElectricField([0, 0, 1.0], charge=charge))
+
+    constants, charges = [1.0, 1.0, 1.5, 1.0, 1.5], [1.0, 0.0, 0.0, 2.0, 0.0]
+    copies = scene(1.0, 1.0).ensemble(parameters={0: {"G": constants}, 1: {"charge": charges}})
+    run = copies.run(t=3.0)
+    for copy, (constant, charge) in enumerate(zip(constants, charges, strict=True)):
+        assert np.array_equal(run.position[copy], scene(constant, charge).run(t=3.0).position)
