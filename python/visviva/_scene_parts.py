@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import chain
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 from visviva import forces as force_classes
 from visviva._body_force import BodyForce
@@ -16,14 +16,12 @@ from visviva.rigid_bodies import RigidBodies
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import TypeAlias
-
-    Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
 
 __all__ = ["Part", "sorted_parts"]
 
 # Made once: a union of types takes longer to make than to ask.
-_PART, _SEVERAL = Particles | RigidBodies | Force | BodyForce, list | tuple
+Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
+_SEVERAL = (list, tuple)
 
 
 def sorted_parts(
@@ -44,7 +42,7 @@ def sorted_parts(
     rigid = [part for part in all_parts if isinstance(part, RigidBodies)]
     named = sum(len(_flat(part)) for part in (*parts, *by_name))  # what follows came as forces=
     for place, part in enumerate(all_parts):
-        if not isinstance(part, _PART):
+        if not isinstance(part, Part):
             came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
             known = ", ".join(name for name in force_classes.__all__ if name != "Force")
             argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
