@@ -364,7 +364,8 @@ pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
         Some((index, &mass)) => Err(Error::invalid(
             "mass",
             format!(
-                "{} acts by its force, so every mass must be positive, got {} = {}",
+                "{} acts by its force, so every mass must be positive, got {} = {}; give a mass of 1 for the force on \
+                 each unit of mass, or where masses attract others write it as ExpressionForce(acceleration=…)",
                 term.declaration().class_name,
                 bodies.name("mass", index),
                 number(mass)

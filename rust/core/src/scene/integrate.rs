@@ -10,6 +10,7 @@ mod halved;
 mod held;
 pub mod neighbors;
 mod report;
+mod shadow;
 
 pub use events::Found;
 pub use halved::{Evidence, Unresolved};

@@ -3,8 +3,9 @@
 use super::super::layout::Layout;
 use super::super::plan::Plan;
 use super::super::unit::{self, Prepared, Unit};
-use super::events::{Abreast, Along, Interpolant, Span, Watch};
+use super::events::{Abreast, Along, Span, Watch};
 use super::report::{Counts, Ending, Report};
+use super::shadow::Shadow;
 use super::{Job, Result, halved, held};
 use crate::error::Error;
 use crate::numerics::element::Shape;
@@ -358,45 +359,4 @@ impl Records<'_> {
 fn paid_by(lane: usize, all: Counts, looks: &[u64]) -> Counts {
     let others = looks.iter().sum::<u64>() - looks.get(lane).copied().unwrap_or_default();
     Counts { evaluations: all.evaluations - others, ..all }
-}
-
-/// The inside of a step, by shadow steps from the node at which it begins: as outputs are, so that both tell the same.
-struct Shadow<'r> {
-    stepper: &'r mut dyn Stepper<Lanes>,
-    system: &'r mut dyn System<Lanes>,
-    node: u64,
-    before: &'r State<Lanes>,
-    between: &'r mut State<Lanes>,
-    /// The fraction of the step that it was taken to last, and whether its velocities are of there, too.
-    last: Option<(f64, bool)>,
-    step: f64,
-}
-
-impl Interpolant for Shadow<'_> {
-    fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
-        if self.last == Some((theta, true)) {
-            return Ok(self.between);
-        }
-        self.last = None;
-        self.between.copy_from(self.before);
-        self.stepper.between(self.node, theta * self.step, self.between, self.system, ticker)?;
-        self.last = Some((theta, true));
-        Ok(self.between)
-    }
-
-    fn positions_at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
-        if self.last.is_some_and(|(last, _)| last == theta) {
-            return Ok(self.between);
-        }
-        self.last = None;
-        self.between.copy_from(self.before);
-        self.stepper.positions_between(self.node, theta * self.step, self.between, self.system, ticker)?;
-        self.last = Some((theta, false));
-        Ok(self.between)
-    }
-
-    /// Has none: what a method of fixed steps says between nodes is a shadow step.
-    fn polynomial(&mut self, _: usize, _: usize, _: &mut Vec<[f64; 2]>, _: &mut Ticker<'_>) -> Result<()> {
-        Ok(())
-    }
 }
