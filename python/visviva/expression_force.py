@@ -78,8 +78,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     Functions are called once with ``(position, velocity, t, **parameters)``, with expressions in the place of numbers:
     arithmetic and NumPy's functions, and no branches. All numbers are in the units of the scene; ``t`` is its own time.
     Far from zero times are numbers that lie apart, 2.4e-7 near 1.7e9, and what changes fast from one to the next is not
-    known better (an `AccuracyWarning` says so): count time from the start of the run. Places and velocities are those of
-    the scene, too: air about a body that moves is not at rest in them.
+    known better (an `AccuracyWarning` says so): count time from the start of the run. Places and velocities are those
+    of the scene, too: air about a body that moves is not at rest in them.
     A potential without time in it is conserved together with the kinetic energy. ``auto`` takes ``taylor`` where a
     series tells all of a formula: of polynomials, sines and cosines, also of the time. Other functions of the time have
     no series.
