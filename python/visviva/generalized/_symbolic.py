@@ -270,9 +270,15 @@ class Symbols:
 
 
 def _number_of(tree: Any) -> complex:
-    """Give the number that a tree without symbols is; one that a float holds exactly in a tenth of the time."""
-    held = tree.is_Float or (tree.is_Rational and abs(tree.p) < 2**53 and tree.q in (1, 2, 4, 8))
-    return complex(float(tree)) if held else complex(tree)
+    """Give the number that a tree without symbols is; of whole ones the quotient, which SymPy cuts before it rounds."""
+    if tree.is_Float:
+        return complex(float(tree))
+    if tree.is_Rational:
+        try:
+            return complex(int(tree.p) / int(tree.q))
+        except OverflowError:
+            return complex(tree)
+    return complex(tree)
 
 
 def trees(
