@@ -351,3 +351,8 @@ def test_rational_numbers_are_rounded_once() -> None:
     for p, q in [(1, 75), (1, 91), (2**57 + 1, 1), (10**40, 3), (-1, 10**300), (3**700, 7**400)]:
         force = vv.ExpressionForce(force=[sp.Rational(p, q), 0, 0])
         assert vv.Scene(body, force).acceleration()[0, 0] == p / q
+
+
+def test_a_rational_number_beyond_floats_is_refused() -> None:
+    with pytest.raises(vv.InvalidInput, match="expected finite real numbers"):
+        vv.ExpressionForce(force=[sp.Rational(10**400, 3), 0, 0])

@@ -142,3 +142,27 @@ def test_copies_with_their_own_numbers_share_lanes_and_have_the_bits_of_each_alo
         alone = scene(field[copy], q[copy]).run(t=5.0)
         assert np.array_equal(run.position[copy], alone.position)
         assert np.array_equal(run.velocity[copy], alone.velocity)
+
+
+@pytest.mark.parametrize(("massive", "massless"), [(2, 0), (3, 40), (10, 0), (10, 200), (0, 12)])
+def test_copies_beside_a_formula_have_the_bits_of_each_alone(massive: int, massless: int) -> None:
+    """Few bodies and more than share a ring, massless ones, own masses, an event, one thread and three."""
+    rng = np.random.default_rng(massive + massless)
+    n = massive + massless
+    wave = vv.ExpressionForce(
+        acceleration=lambda r, v, t: [-r[0] + 0.1 * r[1] ** 2, -r[1], 0.1 * np.cos(3.0 * t) - r[2]]
+    )
+    masses = np.r_[rng.uniform(0.5, 1.0, (5, massive)).T, np.zeros((massless, 5))].T * 1e-3
+    position, velocity = rng.normal(size=(5, n, 3)), rng.normal(size=(5, n, 3))
+    forces = (wave, vv.Gravity(1.0, softening=0.1))
+    event = [vv.events.plane((0, 0, 0), (0, 0, 1.0), body=n - 1)]
+    scene = vv.Scene(vv.Particles(masses[0], position[0], velocity[0]), *forces)
+    copies = scene.ensemble(position=position, velocity=velocity, mass=masses)
+    runs = [copies.run(t=1.0, events=event, threads=threads) for threads in (1, 3)]
+    assert np.array_equal(runs[0].position, runs[1].position)
+    for copy in range(5):
+        alone = vv.Scene(vv.Particles(masses[copy], position[copy], velocity[copy]), *forces)
+        run = alone.run(t=1.0, events=event)
+        assert run.plan.method == ("taylor" if massive <= 8 else "dop853")
+        assert np.array_equal(runs[0].position[copy], run.position)
+        assert np.array_equal(runs[0].events.t[runs[0].events.member == copy], run.events.t)

@@ -3,13 +3,14 @@
 //! The one idea: a lane that starts, is refused or ends is a bit of a mask; whatever is decided of its step, its own [`Pace`]
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
+mod judged;
+
 use super::columns::found;
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
 use super::columns_end::advance;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
-use super::rounding::HARDLY;
-use super::told::{astray, felt, led, led_to, missed};
+use super::told::{felt, led, led_to};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Beyond, Method, Table};
 use crate::error::Result;
@@ -22,7 +23,7 @@ use crate::numerics::real::{Mask, Real};
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
-use crate::ode::system::{Form, System, Taken, Visited};
+use crate::ode::system::{Form, System};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 use std::sync::Arc;
@@ -117,87 +118,6 @@ impl GaussEight {
             }
         }
         self.columns.rates.copy_from_slice(&self.columns.guess);
-    }
-
-    /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
-    /// rounding explains is nothing.
-    fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
-        let mut most = Lanes::zero();
-        let Columns { rates, guess, scales, .. } = &self.columns;
-        let size = |rates| astray(rates, &NOTHING, self.table.stages);
-        let largest = rates.iter().map(size).fold(Lanes::zero(), |largest, size| size.max(largest));
-        let mut rounding = largest;
-        for (lane, pace) in self.paces.iter().enumerate() {
-            let steps = (self.length.0[lane], h.0[lane]);
-            rounding.0[lane] *= self.beyond.rounding.astray(self.table, pace.kept, steps);
-        }
-        for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
-            let mut away = astray(rates, guess, self.table.stages);
-            for (lane, pace) in self.paces.iter().enumerate() {
-                if running.lane(lane) && pace.kept == 0 {
-                    away.0[lane] = self.table.leading(|k| rates[k].0[lane]);
-                }
-            }
-            let hardly_moves = size(rates).less_equal(largest * Lanes::splat(HARDLY));
-            let away = Lanes::select(away.less_equal(rounding).and(hardly_moves), Lanes::zero(), away);
-            most = (away * h.abs() * scale).max(most);
-        }
-        most
-    }
-
-    /// By how much the rates at the ends of steps are not those that the stages lead to, where that is to be asked.
-    fn missed(&mut self, t: Lanes, h: Lanes, running: Bits) -> Lanes {
-        let asked = self.lanes(|_, pace| pace.missable(self.steps)).and(running);
-        if !asked.any() {
-            return Lanes::zero();
-        }
-        self.machine.run(t, self.next.all().0);
-        for (i, rate) in self.ends.iter_mut().enumerate() {
-            *rate = self.machine.output(i);
-        }
-        for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
-            self.taken[lane] += 1;
-        }
-        let stages = self.table.stages;
-        let mut most = missed(&self.beyond.ending.weights, stages, &self.columns, &self.ends, h);
-        let first = self.lanes(|_, pace| pace.kept == 0).and(asked);
-        if first.any() {
-            let begun = missed(&self.beyond.ending.first, stages, &self.columns, &self.begin, h);
-            for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
-                let (begun, most) = (begun.0[lane], &mut most.0[lane]);
-                *most = if begun <= *most { *most } else { begun };
-            }
-        }
-        most
-    }
-
-    /// The parts of steps between whose stages nothing lies that none of them feels, in the lanes of the mask.
-    fn seen_until(
-        &mut self,
-        system: &mut dyn System<Lanes>,
-        state: &State<Lanes>,
-        (from, h): (Lanes, Lanes),
-        asked: Bits,
-    ) -> Result<Lanes> {
-        if !asked.any() {
-            return Ok(Lanes::one());
-        }
-        let last = self.table.stages - 1;
-        for (index, row) in self.columns.rates.iter().enumerate() {
-            [self.edges[0][index], self.edges[1][index]] = [row[0], row[last]];
-        }
-        let Self { table, form, columns, next, edges, .. } = self;
-        let rates = Some([&edges[0][..], &edges[1][..]]);
-        let ends = [state.all().0, next.all().0];
-        let visited = |lane: usize| {
-            let of = |end: &[Lanes]| end.iter().map(|y| y.0[lane]).collect::<Vec<f64>>();
-            table.visited(*form, ends.map(of), h.0[lane], |i, k| columns.rates[i][k].0[lane])
-        };
-        let nodes = &table.c.0[..table.stages];
-        let visited = Some(&visited as &dyn Fn(usize) -> Visited);
-        let seen =
-            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
-        Ok(seen.unwrap_or(Lanes::one()))
     }
 
     /// Looks for what motions from rest are measured by, in the lanes of the mask, over the spans of their runs.

@@ -1,0 +1,95 @@
+//! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
+//! stages, and what lies between these unseen.
+
+use super::super::columns::{Columns, NOTHING};
+use super::super::rounding::HARDLY;
+use super::super::told::{astray, missed};
+use super::GaussEight;
+use crate::error::Result;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::state::State;
+use crate::ode::system::{System, Taken, Visited};
+
+impl GaussEight {
+    /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
+    /// rounding explains is nothing.
+    pub(super) fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
+        let mut most = Lanes::zero();
+        let Columns { rates, guess, scales, .. } = &self.columns;
+        let size = |rates| astray(rates, &NOTHING, self.table.stages);
+        let largest = rates.iter().map(size).fold(Lanes::zero(), |largest, size| size.max(largest));
+        let mut rounding = largest;
+        for (lane, pace) in self.paces.iter().enumerate() {
+            let steps = (self.length.0[lane], h.0[lane]);
+            rounding.0[lane] *= self.beyond.rounding.astray(self.table, pace.kept, steps);
+        }
+        for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
+            let mut away = astray(rates, guess, self.table.stages);
+            for (lane, pace) in self.paces.iter().enumerate() {
+                if running.lane(lane) && pace.kept == 0 {
+                    away.0[lane] = self.table.leading(|k| rates[k].0[lane]);
+                }
+            }
+            let hardly_moves = size(rates).less_equal(largest * Lanes::splat(HARDLY));
+            let away = Lanes::select(away.less_equal(rounding).and(hardly_moves), Lanes::zero(), away);
+            most = (away * h.abs() * scale).max(most);
+        }
+        most
+    }
+
+    /// By how much the rates at the ends of steps are not those that the stages lead to, where that is to be asked.
+    pub(super) fn missed(&mut self, t: Lanes, h: Lanes, running: Bits) -> Lanes {
+        let asked = self.lanes(|_, pace| pace.missable(self.steps)).and(running);
+        if !asked.any() {
+            return Lanes::zero();
+        }
+        self.machine.run(t, self.next.all().0);
+        for (i, rate) in self.ends.iter_mut().enumerate() {
+            *rate = self.machine.output(i);
+        }
+        for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
+            self.taken[lane] += 1;
+        }
+        let stages = self.table.stages;
+        let mut most = missed(&self.beyond.ending.weights, stages, &self.columns, &self.ends, h);
+        let first = self.lanes(|_, pace| pace.kept == 0).and(asked);
+        if first.any() {
+            let begun = missed(&self.beyond.ending.first, stages, &self.columns, &self.begin, h);
+            for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
+                let (begun, most) = (begun.0[lane], &mut most.0[lane]);
+                *most = if begun <= *most { *most } else { begun };
+            }
+        }
+        most
+    }
+
+    /// The parts of steps between whose stages nothing lies that none of them feels, in the lanes of the mask.
+    pub(super) fn seen_until(
+        &mut self,
+        system: &mut dyn System<Lanes>,
+        state: &State<Lanes>,
+        (from, h): (Lanes, Lanes),
+        asked: Bits,
+    ) -> Result<Lanes> {
+        if !asked.any() {
+            return Ok(Lanes::one());
+        }
+        let last = self.table.stages - 1;
+        for (index, row) in self.columns.rates.iter().enumerate() {
+            [self.edges[0][index], self.edges[1][index]] = [row[0], row[last]];
+        }
+        let Self { table, form, columns, next, edges, .. } = self;
+        let rates = Some([&edges[0][..], &edges[1][..]]);
+        let ends = [state.all().0, next.all().0];
+        let visited = |lane: usize| {
+            let of = |end: &[Lanes]| end.iter().map(|y| y.0[lane]).collect::<Vec<f64>>();
+            table.visited(*form, ends.map(of), h.0[lane], |i, k| columns.rates[i][k].0[lane])
+        };
+        let nodes = &table.c.0[..table.stages];
+        let visited = Some(&visited as &dyn Fn(usize) -> Visited);
+        let seen =
+            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+        Ok(seen.unwrap_or(Lanes::one()))
+    }
+}
