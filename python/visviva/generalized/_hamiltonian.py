@@ -264,7 +264,7 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         """
         return canonical_test(self, transformation)
 
-    def _check_start(self) -> None:
+    def _look_at_start(self) -> None:
         here = np.array([self.t0]), self._start()[None, :], self._values[None, :]
         if not all(map(isfinite, self._model.rates(*here)[0].tolist())):
             refuse_a_start(self, self._start(), "a rate of Hamilton's equations is no number")

@@ -304,7 +304,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         """
         return len(self.coordinates) - self._constraints()
 
-    def _check_start(self) -> None:
+    def _look_at_start(self) -> None:
         state = self._start()
         if self._constraints():
             check_on_constraints(self, state)

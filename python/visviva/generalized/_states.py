@@ -33,7 +33,19 @@ __all__ = ["States", "as_system"]
 class States(Shown):
     """Base of `GeneralizedSystem`: what it is made of, and the same system elsewhere."""
 
-    __slots__ = ("_model", "_projects", "_second", "_source", "_values", "coordinates", "parameters", "position", "t0")
+    __slots__ = (
+        "_model",
+        "_projects",
+        "_second",
+        "_source",
+        "_start_is_sound",
+        "_structure",
+        "_values",
+        "coordinates",
+        "parameters",
+        "position",
+        "t0",
+    )
 
     coordinates: tuple[str, ...]
     parameters: dict[str, float]
@@ -45,6 +57,10 @@ class States(Shown):
     _second: NDArray[np.float64]
     #: Whether starts are put on the constraints: ``consistent="project"``.
     _projects: bool
+    #: What the core has found of the equations.
+    _structure: dict[str, Any]
+    #: Whether the start was looked at: it never changes.
+    _start_is_sound: bool
 
     #: What the second half of a state is called.
     _second_name = "velocity"
@@ -72,6 +88,8 @@ class States(Shown):
         set_(self, "_second", _frozen(np.zeros(n) if second is None else float_array(self._second_name, second, (n,))))
         set_(self, "t0", number("t0", t0))
         set_(self, "_model", _core.GeneralizedModel(source.description) if model is None else model)
+        set_(self, "_structure", self._model.structure())
+        set_(self, "_start_is_sound", False)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenAttribute(name, f"a {type(self).__name__} is frozen; at({name}=…) makes another one")
@@ -92,16 +110,18 @@ class States(Shown):
             rows.append((self._second_name, ", ".join(f"{value:g}" for value in self._second)))
         return Sheet(type(self).__name__, rows)
 
-    @property
-    def _structure(self) -> dict[str, Any]:
-        return self._model.structure()
-
     def _constraints(self) -> int:
         description = self._source.description
         return len(description["holonomic"]) + len(description["nonholonomic"])
 
     def _check_start(self) -> None:
         """Refuse a start from which the equations have no meaning."""
+        if not self._start_is_sound:
+            self._look_at_start()
+            object.__setattr__(self, "_start_is_sound", True)
+
+    def _look_at_start(self) -> None:
+        """Refuse a start from which the equations have no meaning, looking."""
 
     def at(
         self,
