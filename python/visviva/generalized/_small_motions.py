@@ -79,8 +79,9 @@ class SmallMotions:
         """Places where the system stays, their stability and their frequencies.
 
         Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
-        others, the places that the search comes to are told. On constraints they are where reactions balance forces;
-        with nonholonomic ones they fill surfaces, and without `near` one is told, next to the start.
+        others, the places that the search comes to are told; if its size is not about a turn, two dozen of them.
+        On constraints they are where reactions balance forces; with nonholonomic ones they fill surfaces, and without
+        `near` one is told, next to the start.
 
         Units: those of the system.
 
