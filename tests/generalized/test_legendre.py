@@ -56,6 +56,22 @@ def test_relativity() -> None:
         back([0.0, 0.0], [1.0, 0.5])
 
 
+@pytest.mark.parametrize("energy", [lambda p: np.sqrt(1 + p**2), lambda p: np.log(np.cosh(p))])
+def test_a_limit_of_velocities_is_no_velocity(energy: Any) -> None:
+    """√(1 + p²) and ln cosh p: rounded velocities are 1 from p = 1e8 and 20 on, where L was told as -7e-9 and ln 2."""
+    transform = vv.Hamiltonian(lambda q, p, t: energy(p[0]), ["x"]).legendre_transform()
+    for velocity in (1.0, -1.0):
+        with pytest.raises(vv.errors.ConvergenceError, match=rf"have the velocity \[{velocity}\] .* grow without end"):
+            transform([0.0], [velocity])
+    # What is below it by more than its last digits is told: half of 1e-12 is lost from 1 − v.
+    p = transform.conjugate([0.0], [1.0 - 1e-12])[0]
+    slope = p / np.sqrt(1 + p**2) if energy(10.0) > 9.9 else np.tanh(p)
+    assert 1.0 - slope == pytest.approx(1e-12, rel=1e-3, abs=0)
+    # A velocity that no momentum changes is reached by all of them.
+    drift = vv.Hamiltonian(lambda q, p, t: 2.0 * p[0], ["x"]).legendre_transform()
+    assert drift([0.0], [2.0]) == 0.0
+
+
 @pytest.mark.parametrize("name", ["double_pendulum", "charged_particle", "hoop", "cart_pendulum"])
 def test_of_quadratic_functions_it_is_the_expression(name: str) -> None:
     system = getattr(vv.systems, name)()

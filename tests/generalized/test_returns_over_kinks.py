@@ -91,3 +91,41 @@ def test_a_section_takes_the_steps_that_a_run_takes() -> None:
     # Of x'' = ∓1 from rest at 1/2 a quarter is one unit of time.
     np.testing.assert_allclose(passed.t, 3.0 + 4.0 * np.arange(len(passed.t)), rtol=1e-10, atol=0)
     assert len(passed.t) == 5
+
+
+@pytest.mark.parametrize("start", [1.0, 2.0])
+@pytest.mark.parametrize("k", [10.0, 3e3, 1e4, 1e6])
+def test_a_kink_right_beside_a_steep_wall(k: float, start: float) -> None:
+    """p²/2 + |x| + exp(−k x): from k = 1e4 on it turns back closer to the kink than numbers beside 1 differ."""
+    system = of_one(lambda x, p: p**2 / 2 + np.abs(x) + np.exp(-k * x), start, 0.0)
+    with mp.workdps(40):
+        top = mpf(start)
+        energy, low = top + mp.exp(-k * top), mpf(0)
+        for _ in range(60):
+            low = -mp.log(energy + low if low < 0 else energy - low) / k
+
+        # By the square root of the distance from a turning point, from which what is left of the energy is counted.
+        def near(u: Any) -> Any:
+            d = u * u
+            fall = d if low + d < 0 else abs(low) - low - d
+            return 2 * u / mp.sqrt(2 * (fall - mp.exp(-k * low) * mp.expm1(-k * d)))
+
+        def far(u: Any) -> Any:
+            return 2 * u / mp.sqrt(2 * (u * u - mp.exp(-k * top) * mp.expm1(k * u * u)))
+
+        middle = min(80 / mpf(k), top / 2)
+        cuts = sorted({mpf(0), mp.sqrt(max(-low, 0)), mp.sqrt(middle / 8 - low), mp.sqrt(middle - low)})
+        expected = float(2 * (quad(near, cuts) + quad(far, [0, mp.sqrt(top - middle)])))
+    for form in (system, system.lagrangian()):
+        # The tolerance of steps on either side of the kink.
+        assert form.period() == pytest.approx(expected, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    "potential", [lambda x: -1 / np.abs(x), lambda x: np.sqrt(np.abs(x)), lambda x: np.log(np.abs(x))]
+)
+def test_an_infinite_force_is_refused_whatever_is_tried(potential: Callable[[Any], Any]) -> None:
+    system = of_one(lambda x, p: p**2 / 2 + potential(x), 1.0, 0.0)
+    for asked in (system.period, system.action_variable, system.lagrangian().period):
+        with pytest.raises(vv.errors.InvalidInput, match="the slope of its energy is no finite number"):
+            asked()

@@ -47,7 +47,9 @@ class PathIntegral(Record):
         How far the sum may be from the integral along this path, round-off included.
     interpolation : float
         How much polynomials of two degrees less between the known times change the value: more than what the path
-        itself is off, where its times are close enough to tell its shape. 0 where straight lines were asked for.
+        itself is off, where its times are close enough to tell its shape. Of a run whose rows are not, how much the
+        equations of motion change it that are followed between them, if that is more; not for variations that are
+        given as numbers at the rows. 0 where straight lines were asked for.
 
     References
     ----------
@@ -164,8 +166,20 @@ def _integral(path: Path, integrand: Integrand, variation: Any) -> PathIntegral:
     value, quadrature = _settled(path, integrand, variation)
     if path.coarser is None:
         return PathIntegral(value, quadrature, 0.0)
-    less = variation.coarser or variation if isinstance(variation, Path) else variation
-    return PathIntegral(value, quadrature, abs(value - _settled(path.coarser, integrand, less)[0]))
+    of_pieces = isinstance(variation, Path)
+    less = variation.coarser or variation if of_pieces else variation
+    finer = None if of_pieces else path.finer
+    changes = []
+    try:
+        changes.append(abs(value - _settled(path.coarser, integrand, less)[0]))
+    except ConvergenceError:
+        # Polynomials of a lower degree may come next to a singularity that the path itself does not.
+        if finer is None:
+            raise
+    if finer is not None:
+        ahead = 1.0 if path.t[0] < path.t[-1] else -1.0
+        changes.append(abs(value - ahead * _settled(finer, integrand, variation)[0]))
+    return PathIntegral(value, quadrature, max(changes))
 
 
 def _settled(path: Path, integrand: Integrand, variation: Any) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from visviva.generalized._analysis import free_matrices, linearization, lineariz
 from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._level_directions import stays
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
-from visviva.generalized._multiple_zeros import at_rest, round_off, settled
+from visviva.generalized._multiple_zeros import at_rest, left_open, round_off, settled, units
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._searches import (
     SAME,
@@ -33,13 +33,14 @@ from visviva.generalized._searches import (
     where_something_acts,
     within,
 )
+from visviva.generalized._valleys import ends_of_valleys
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["Equilibrium", "equilibria", "equilibrium_at"]
+__all__ = ["Equilibrium", "asked_at_rest", "equilibria", "equilibrium_at"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
@@ -104,7 +105,12 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         return _of_constrained(system, starts, everywhere=True)
     is_angle = angles(*matrices_along(system, turned(first)))
     found = _found(system, starts, within(first, is_angle))
+    found = with_other_sizes(system, asked_at_rest(system), is_angle, found)
+    return sorted(found, key=lambda each: tuple(each.position))
 
+
+def asked_at_rest(system: Lagrangian) -> AtRest:
+    """Give what a search among lengths of all sizes asks of a Lagrangian without constraints."""
     energy = at_rest(system, Sizes(system))
 
     def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -113,9 +119,14 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         rounding[:] = small.all(axis=1)
         return rounding
 
-    asked = AtRest(lambda places: matrices_along(system, places), balanced, lambda places: equilibria(system, places))
-    found = with_other_sizes(system, asked, is_angle, found)
-    return sorted(found, key=lambda each: tuple(each.position))
+    def open_about(each: Equilibrium) -> NDArray[np.float64]:
+        size = np.full(len(each.position), np.abs(each.position).max())
+        found = left_open(energy, each.position, size, units(system, each.position), curved=True)
+        return np.zeros(len(size)) if found is None else np.abs(found)
+
+    return AtRest(
+        lambda places: matrices_along(system, places), balanced, open_about, lambda places: equilibria(system, places)
+    )
 
 
 def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
@@ -262,6 +273,13 @@ def _reached(
         distinguishing = distinguishing_coordinates(system)
         near = [(np.abs(each) <= most)[:, distinguishing] for each in (told, nearly)]
         told, nearly = told[near[0].all(axis=1)], nearly[near[1].all(axis=1)]
+        if n > 1:
+            looked_at = np.abs(starts).max(axis=0)
+            looked_at[looked_at == 0.0] = 1.0
+            walked = [
+                ends_of_valleys(lambda at: matrices_along(system, at), each, looked_at) for each in (told, nearly)
+            ]
+            told, nearly = (each[(np.abs(each) <= most)[:, distinguishing].all(axis=1)] for each in walked)
     told = settled(system, told, nearly, np.abs(starts).max(axis=0), sizes)
     if not len(told) and not np.isfinite(matrices_along(system, starts)[0]).all(axis=1).any():
         # Forces that have no value at rest, as those of dry friction, are told by name.

@@ -1,7 +1,6 @@
 """Equilibria of Hamiltonian systems: states at which neither coordinates nor momenta change.
 
-The one idea: where Newton's method leads the Lagrangian tells of small motions. Of what has none eigenvalues of the
-derivatives of the rates do; where they leave H level to second order, a minimum or a maximum of any order is stable.
+The one idea: where Newton's method leads the Lagrangian tells of small motions; of what has none, its own rates do.
 """
 
 from __future__ import annotations
@@ -13,17 +12,12 @@ import numpy as np
 
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
-from visviva.generalized._calculus import Calculus
-from visviva.generalized._equilibria import Equilibrium, equilibrium_at
+from visviva.generalized._equilibria import Equilibrium, asked_at_rest, equilibrium_at
 from visviva.generalized._hamiltonian_at_rest import at_zeros_of_forces, forces_at_rest, states_at_rest
-from visviva.generalized._higher_orders import Energy, curvatures, rises
-from visviva.generalized._kinks import with_limits
-from visviva.generalized._level_directions import falls_farther_off
-from visviva.generalized._matrices import LAST_DIGITS, Sizes, balanced_units, nudges
-from visviva.generalized._multiple_zeros import is_simple, left_open, round_off, told_apart
-from visviva.generalized._newton import Scales, rates_and_slopes, reached, scales_of
+from visviva.generalized._matrices import LAST_DIGITS, Sizes
+from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
+from visviva.generalized._newton import rates_and_slopes, reached, scales_of
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
-from visviva.generalized._probe import terms_of
 from visviva.generalized._searches import (
     SAME,
     angles,
@@ -36,22 +30,18 @@ from visviva.generalized._searches import (
     where_something_acts,
     within,
 )
+from visviva.generalized._stability_by_momenta import energy_of, equilibrium_by_momenta
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._hamiltonian import Hamiltonian
-    from visviva.generalized._higher_orders import Curvatures
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["FOUND", "fixed_points", "rounding_of_slopes", "slopes_at"]
+__all__ = ["fixed_points"]
 
-#: Eigenvalues whose real parts are below this part of the largest are imaginary; such equal ones need as many vectors.
-_ON_THE_AXIS = 1e-7
 #: What part of what momenta do the last digits of a state make at a pole.
 _MADE_OF_THEM = 0.1
-#: States are found to this part of their sizes.
-FOUND = SAME
 
 
 def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -76,7 +66,16 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     is_angle = angles(*_forces(system, moved))
     found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
 
-    energy = _energy(system)
+    # Those of the Lagrangian, which knows forces without what momenta of rest add and take away again.
+    of = _by_velocities(system)
+    asked = _asked_by_momenta(system) if of is None else asked_at_rest(of[0])
+    found = with_other_sizes(system, asked, is_angle, found)
+    return sorted(found, key=lambda each: (*each.position, *each.momentum))
+
+
+def _asked_by_momenta(system: Hamiltonian) -> AtRest:
+    """Give what a search among lengths of all sizes asks of a Hamiltonian that no Lagrangian tells of."""
+    energy = energy_of(system)
 
     def balanced(places: NDArray[np.float64]) -> NDArray[np.bool_]:
         states, known = states_at_rest(system, places)
@@ -85,13 +84,18 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
         rounding[known] = small.all(axis=1)
         return rounding
 
-    asked = AtRest(
+    def open_about(each: Equilibrium) -> NDArray[np.float64]:
+        state = np.concatenate([each.position, each.momentum])
+        scales = scales_of(system, state[None])
+        found = left_open(energy, state, scales.sizes, scales.units, curved=True)
+        return np.zeros(len(each.position)) if found is None else np.abs(found[: len(each.position)])
+
+    return AtRest(
         lambda places: forces_at_rest(system, places),
         balanced,
+        open_about,
         lambda places: fixed_points(system, states_at_rest(system, places)[0]),
     )
-    found = with_other_sizes(system, asked, is_angle, found)
-    return sorted(found, key=lambda each: (*each.position, *each.momentum))
 
 
 def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
@@ -119,7 +123,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
     while len(states):
         places.append(states[0])
         states = states[((np.abs(states - states[0]) > SAME * size) & distinguishing).any(axis=1)]
-    energy = _energy(system)
+    energy = energy_of(system)
     places = sorted(told_apart(energy, places, size, lambda _: scales.units), key=tuple)
     if most is not None:
         # At a pole of the coordinates H is singular, and what has no momentum there may go anywhere.
@@ -134,7 +138,7 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
     of = _by_velocities(system)
     told = [_of_lagrangian(of, place, size[:n]) for place in places]
     return [
-        _equilibrium(system, energy, place, scales) if each is None else each
+        equilibrium_by_momenta(system, energy, place, scales) if each is None else each
         for each, place in zip(told, places, strict=True)
     ]
 
@@ -178,131 +182,5 @@ def _forces(system: Hamiltonian, states: NDArray[np.float64]) -> tuple[NDArray[n
     return rates[:, n:], slopes[:, n:, :n]
 
 
-def _equilibrium(system: Hamiltonian, energy: Energy, state: NDArray[np.float64], scales: Scales) -> Equilibrium:
-    n = len(system.coordinates)
-    slopes, (units, size, _) = slopes_at(system, state), scales
-    others = np.abs(slopes) * (1.0 - np.eye(len(state)))
-    if np.isfinite(slopes).all() and others.any(axis=0).all() and others.any(axis=1).all():
-        # Slopes where the search began may be of quite another size.
-        units = balanced_units(slopes[None])[0]
-    if not np.isfinite(slopes).all():
-        raise InvalidInput(
-            "H",
-            f"expected rates that have derivatives at the equilibrium {state.round(6).tolist()}, and they have none: "
-            "there is a kink, as that of |q|; round it off, as by sqrt(q² + width²), or look elsewhere by near",
-        )
-    # Of rates with forces that no function has, nothing but the linear equations tells.
-    second, found_to = _second(slopes[None])[0], FOUND * size
-    left = left_open(energy, state, size, units)
-    if left is None:
-        found_to = np.fmin(found_to, _left_by_rounding(energy, state, second))
-    elif is_simple(energy, np.stack([state, state + left, state - left]), units):
-        left, found_to = None, LAST_DIGITS * size
-    off = np.abs(_second(rounding_of_slopes(system, state, found_to, slopes)[None])[0])
-    if left is not None:
-        beside = energy.slopes(np.stack([state + left, state - left]))[1]
-        off = np.fmax(off, np.abs(beside - second).max(axis=0))
-    about = curvatures(np.where(np.abs(second) > off, second, 0.0), off)
-    level = about is not None and bool((about.values == 0.0).any())
-    if about is not None and level:
-        scaled = about.vectors * about.sizes[:, None]
-        slopes = _rates_of((scaled * about.values) @ scaled.T * about.sizes * about.sizes[:, None])
-    values, vectors = np.linalg.eig(slopes * units / units[:, None])
-    largest = np.abs(values).max(initial=0.0)
-    # A pair of zeros that are level is told by half of the digits.
-    least = _ON_THE_AXIS * largest if level else 0.0
-    frequencies = np.sort(np.abs(values.imag[values.imag > least]))
-    stable = bool((values.real <= _ON_THE_AXIS * largest).all())
-    if stable and not (values.real < -_ON_THE_AXIS * largest).all():
-        by_energy = _by_energy(energy, state, about, off, size) if about is not None and level else None
-        # A coordinate that runs away by itself has an eigenvalue 0 without a vector of its own.
-        own = bool(largest > 0.0) and bool(np.linalg.svd(vectors, compute_uv=False)[-1] > _ON_THE_AXIS)
-        stable = own if by_energy is None else by_energy
-    return Equilibrium(state[:n], stable, frequencies, state[n:])
-
-
-def slopes_at(
-    system: Hamiltonian, state: NDArray[np.float64], parameters: NDArray[np.float64] | None = None
-) -> NDArray[np.float64]:
-    """Derivatives of the rates (2n, 2n) at a state, and what they come to where their formulas have none."""
-    width = len(state)
-
-    def evaluate(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        rates, slopes = rates_and_slopes(system, states, parameters)
-        return np.concatenate([rates, slopes.reshape(len(states), -1)], axis=1)
-
-    return with_limits(evaluate, state, width)[width:].reshape(width, width)
-
-
-def _left_by_rounding(energy: Energy, state: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far (2n) a state may be from where all rates vanish, as far as they tell; without end where H is level."""
-    try:
-        inverse = np.linalg.inv(second)
-    except np.linalg.LinAlgError:
-        return np.full(len(state), np.inf)
-    made_of = np.abs(second) @ np.abs(state) + energy.sizes(state[None])[0]
-    left: NDArray[np.float64] = np.abs(inverse) @ (np.abs(energy.slopes(state[None])[0][0]) + LAST_DIGITS * made_of)
-    return left
-
-
-def _second(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give ∂²H (S, 2n, 2n) of the derivatives of rates J ∂H."""
-    n = slopes.shape[-1] // 2
-    return np.concatenate([-slopes[:, n:], slopes[:, :n]], axis=1)
-
-
-def _rates_of(second: NDArray[np.float64]) -> NDArray[np.float64]:
-    n = len(second) // 2
-    return np.concatenate([second[n:], -second[:n]])
-
-
-def rounding_of_slopes(
-    system: Hamiltonian, state: NDArray[np.float64], found_to: NDArray[np.float64], slopes: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Give what a state (2n) found to so much and the last digits of parameters make of derivatives of rates."""
-    off = LAST_DIGITS * np.abs(slopes)
-    n = len(state)
-    for signs in nudges(n + len(system._values)):
-        other = slopes_at(system, state + found_to * signs[:n], system._values * (1.0 + LAST_DIGITS * signs[n:]))
-        off = np.fmax(off, np.abs(other - slopes))
-    return off
-
-
-def _energy(system: Hamiltonian) -> Energy:
-    n = len(system.coordinates)
-    c = Calculus(system)
-    (row,) = c.with_derivatives(c.of_system("function"))
-    sums = [terms_of(c, [each]) for each in row[1 : 1 + 2 * n]]
-
-    def slopes(states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        rates, derivatives = rates_and_slopes(system, states)
-        return np.concatenate([-rates[:, n:], rates[:, :n]], axis=1), _second(derivatives)
-
-    def sizes(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        times = np.full(len(states), system.t0)
-        found = [
-            np.abs(c.values(each, times, states, system._values)).sum(axis=1) if each else np.zeros(len(states))
-            for each in sums
-        ]
-        return np.stack(found, axis=1)
-
-    return Energy(slopes, sizes)
-
-
-def _by_energy(
-    energy: Energy, state: NDArray[np.float64], about: Curvatures, off: NDArray[np.float64], size: NDArray[np.float64]
-) -> bool | None:
-    """Whether H has a minimum or a maximum where it is level to second order; nothing if that is not known.
-
-    Where it stays level are equilibria, too: that a motion drifts along them does not count, as along a coordinate that
-    nothing depends on.
-    """
-    known = set(np.sign(about.values[about.values != 0.0]))
-    if len(known) > 1:
-        return None
-    beside = set(rises(energy, state, about, off))
-    if {-1.0, 1.0} <= known | beside:
-        return False
-    # Nothing that is seen is not yet nothing that is there.
-    falls = 0.0 in beside and falls_farther_off(energy, state, about, size, -1.0 if -1.0 in known | beside else 1.0)
-    return None if falls else True
+def __dir__() -> list[str]:
+    return list(__all__)

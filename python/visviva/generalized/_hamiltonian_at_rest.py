@@ -1,7 +1,6 @@
 """Hamiltonian systems at rest: the momenta of rest, the forces there, and where these vanish.
 
-The one idea: at rest nothing is left but n forces of n coordinates, which Newton's method judges by what is known at
-one place and nowhere else.
+The one idea: at rest nothing is left but n forces of n coordinates.
 """
 
 from __future__ import annotations
@@ -10,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva.generalized._newton import rates_and_slopes, steps_to_zeros
+from visviva.generalized._newton import rates_and_slopes
 from visviva.generalized._searches import SAME
+from visviva.generalized._valleys import ends_of_valleys
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,21 +22,21 @@ __all__ = ["at_zeros_of_forces", "forces_at_rest", "states_at_rest"]
 
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
-#: Newton's steps along a valley that is curved. Every other one leads back to its ground, however small it is, so that
-#: several small ones tell that it ends.
-_STEPS_ALONG_A_VALLEY = 60
-_SMALL_STEPS = 4
 #: Momenta that differ by more than this part of what is looked at are others.
 _OTHER_MOMENTA = 1e-3
 
 
-def states_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+def states_at_rest(
+    system: Hamiltonian, places: NDArray[np.float64], near: NDArray[np.float64] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Give states (S, 2n) at places (S, n) with the momenta of rest, zero unless coordinates rotate or the like.
 
-    And at which of the places: those where rates are numbers.
+    And at which of the places: those where rates are numbers. Where there are several, those that Newton's method comes
+    to from momenta (S, n) that are given, or zero.
     """
     n = places.shape[1]
-    states, index = np.concatenate([places, np.zeros_like(places)], axis=1), np.arange(len(places))
+    momenta = np.zeros_like(places) if near is None else near
+    states, index = np.concatenate([places, momenta], axis=1), np.arange(len(places))
     for _ in range(_STEPS_TO_REST):
         rates, slopes = rates_and_slopes(system, states)
         known = np.isfinite(rates).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
@@ -50,10 +50,15 @@ def states_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[ND
     return states, index
 
 
-def forces_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Forces (S, n) at places at rest, and minus their derivatives (S, n, n) where momenta stay those of rest."""
+def forces_at_rest(
+    system: Hamiltonian, places: NDArray[np.float64], near: NDArray[np.float64] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forces (S, n) at places at rest, and minus their derivatives (S, n, n) where momenta stay those of rest.
+
+    Those momenta are `near` some (S, n), or zero.
+    """
     n = places.shape[1]
-    states, known = states_at_rest(system, places)
+    states, known = states_at_rest(system, places, near)
     forces, stiffness = np.full(places.shape, np.nan), np.full((*places.shape, n), np.nan)
     rates, slopes = rates_and_slopes(system, states)
     softer = -slopes[:, n:, :n]
@@ -66,31 +71,16 @@ def forces_at_rest(system: Hamiltonian, places: NDArray[np.float64]) -> tuple[ND
 def at_zeros_of_forces(
     system: Hamiltonian, states: NDArray[np.float64], looked_at: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """States (S, 2n) at which forces at rest lead no further, by what is known there and nowhere else.
-
-    What rates are made of at other starts may be so much more that along a valley all of these seem to be round-off.
-    Those go on to where it ends.
-    """
+    """States (S, 2n) at which forces at rest lead no further, by what is known there and nowhere else."""
     n = states.shape[1] // 2
     # What stays with other momenta than those that are come to from zero is judged by the rates alone.
     resting = np.full(states.shape, np.nan)
     rest, known = states_at_rest(system, states[:, :n])
     resting[known] = rest
     own = ~(np.abs(states - resting) <= _OTHER_MOMENTA * looked_at).all(axis=1)
-    there, states = [states[own]], states[~own]
-    small = np.zeros(len(states), dtype=int)
-    for _ in range(_STEPS_ALONG_A_VALLEY):
-        step = steps_to_zeros(*forces_at_rest(system, states[:, :n])) / looked_at[:n]
-        # Kinks, and what nothing changes, are where they are.
-        step[np.isnan(step).any(axis=1)] = 0.0
-        length = np.abs(step).max(axis=1)
-        small = np.where(length <= SAME, small + 1, 0)
-        stays = (small >= _SMALL_STEPS) | (length == 0.0)
-        there.append(states[stays])
-        step, length, states, small = step[~stays], length[~stays], states[~stays], small[~stays]
-        ahead, known = states_at_rest(system, states[:, :n] + step / np.fmax(length, 1.0)[:, None] * looked_at[:n])
-        # Nothing is known at a kink, but of states right beside it.
-        at_kinks = np.setdiff1d(np.flatnonzero(small), known)
-        there.append(states[at_kinks])
-        states, small = ahead, small[known]
-    return np.concatenate(there)
+    places = ends_of_valleys(lambda at: forces_at_rest(system, at), states[~own, :n], looked_at[:n])
+    return np.concatenate([states[own], states_at_rest(system, places)[0]])
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

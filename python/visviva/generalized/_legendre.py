@@ -34,6 +34,9 @@ _RESIDUAL = 1e-12
 _NEGATIVE = 1e-10
 #: Multiples of what was found at which the function is looked at, too: it may be bent elsewhere.
 _MULTIPLES = (-2.0, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 2.0)
+#: Multiples of what was found at which derivatives are the same if they come to a limit there, and are not.
+_BEYOND = 2.0
+_WELL_WITHIN = 1e-3
 #: Sizes that are tried where the derivatives at rest tell none.
 _SIZES = tuple(10.0**power for power in range(-40, 41, 2))
 _NAMES = {"lagrangian": ("momentum", "velocity", "velocities"), "hamiltonian": ("velocity", "momentum", "momenta")}
@@ -275,8 +278,26 @@ class LegendreTransform(Shown):
                 f"no {several} were found that have the {given} {p[row].tolist()} at {q[row].tolist()}: "
                 "it may be out of reach of the derivative"
             )
+        limit = self._is_limit(q, p, v, t)
+        if limit.any():
+            row = int(np.argmax(limit))
+            raise ConvergenceError(
+                f"no {several} were found that have the {given} {p[row].tolist()} at {q[row].tolist()}: it is, to all "
+                f"its digits, a limit that the derivative comes to as {several} grow without end"
+            )
         for multiple in _MULTIPLES:
             self._check_convex(self._mass(q, multiple * v, t), q, multiple * v)
+
+    def _is_limit(self, q: _Array, p: _Array, v: _Array, t: float) -> NDArray[np.bool_]:
+        """Whether twice of what was found has the same derivatives, as next to the speed of light.
+
+        Those of a homogeneous function are the same at a small part of it, too, and are no limit.
+        """
+        with np.errstate(all="ignore"):
+            beyond, within = (np.abs(self._missing(q, p, part * v, t)).max(axis=1) for part in (_BEYOND, _WELL_WITHIN))
+            rounding = np.finfo(float).eps * np.abs(p).max(axis=1)
+            found: NDArray[np.bool_] = (beyond <= rounding) & (within > rounding) & (v != 0.0).any(axis=1)
+        return found
 
     def _check_convex(self, mass: _Array, q: _Array, v: _Array) -> None:
         """Refuse a negative eigenvalue; where the function has no value there is none."""

@@ -14,9 +14,9 @@ from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import eigenmodes, of_matrices
 from visviva.generalized._constrained_motions import BALANCED
-from visviva.generalized._fixed_points import FOUND, fixed_points, rounding_of_slopes, slopes_at
-from visviva.generalized._matrices import Matrices
+from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._newton import rates_and_slopes
+from visviva.generalized._stability_by_momenta import FOUND, matrices_of_rates, rounding_of_slopes, slopes_at
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -58,16 +58,11 @@ def linearization_by_momenta(
             f"expected an equilibrium, but there is a {what} of {rates[worst]:.3g} of "
             f"{system.coordinates[worst % n]!r} there; see equilibria()",
         )
-    a, b, c, d = slopes[:n, :n], slopes[:n, n:], slopes[n:, :n], slopes[n:, n:]
+    unsure = rounding_of_slopes(system, state, FOUND * size, slopes)
     try:
-        mass = np.linalg.inv(b).astype(np.float64)
+        found, of_stiffness = matrices_of_rates(rates, slopes, unsure)
     except np.linalg.LinAlgError:
         raise InvalidInput("H", "expected ∂²H/∂p² that is not singular, and at this place it is") from None
-    by = d @ mass
-    found = Matrices(rates[n:], mass, -(mass @ a + by), by @ a - c)
-    unsure = rounding_of_slopes(system, state, FOUND * size, slopes)
-    of_by = np.abs(by) @ unsure[:n, n:] @ np.abs(mass) + unsure[n:, n:] @ np.abs(mass)
-    of_stiffness = unsure[n:, :n] + np.abs(by) @ unsure[:n, :n] + of_by @ np.abs(a)
     return of_matrices(place, (found, of_stiffness, None), eigenmodes(found, None), system.coordinates)
 
 

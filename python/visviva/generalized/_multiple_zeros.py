@@ -105,10 +105,17 @@ def _soft(system: Lagrangian, places: NDArray[np.float64], size: NDArray[np.floa
 
 def round_off(energy: Energy, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether slopes at places are nothing but round-off (S, n), that of places beside their sizes, too."""
+    first, rounding = _slopes_and_rounding(energy, places, size)
+    small: NDArray[np.bool_] = np.abs(first) <= rounding
+    return small
+
+
+def _slopes_and_rounding(
+    energy: Energy, places: NDArray[np.float64], size: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     first, second = energy.slopes(places)
     made_of = np.einsum("sij,sj->si", np.abs(second), np.fmax(np.abs(places), size)) + energy.sizes(places)
-    small: NDArray[np.bool_] = np.abs(first) <= _ROUNDINGS * _EPSILON * made_of
-    return small
+    return first, _ROUNDINGS * _EPSILON * made_of
 
 
 def left_open(
@@ -142,6 +149,12 @@ def left_open(
     if not curved or len(reached) == len(_WITHIN):
         return left
     along = _along_the_ground(energy, place, size, (softest, (vectors[:-1] * unit).T))
+    if values[-1] > _ROUNDINGS * _EPSILON * values[0]:
+        # It is no curve: forces of so much are seen so far away, whatever the way there is.
+        direction = np.abs(vectors[-1] * unit)
+        _, rounding = _slopes_and_rounding(energy, place[None], size)
+        told = direction * (direction @ rounding[0]) / values[-1]
+        along = np.fmax(along, np.fmin(told, _WITHIN[-1] * size) / _ONE)
     return np.where(along > np.abs(left), np.copysign(along, softest), left)
 
 

@@ -7,13 +7,14 @@ those through the nearest of them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import float_array, whole_number
 from visviva.errors import InvalidInput
+from visviva.generalized._methods import ACROSS_KINKS
 from visviva.generalized._trajectory import GeneralizedTrajectory
 
 if TYPE_CHECKING:
@@ -34,6 +35,12 @@ _NEAREST = 1e-3
 _MOST_PARTS = 16
 _ROUNDS = 4
 _MOST_ROWS = 50_000
+#: Rows are too far apart where polynomials miss accelerations, times the square of the time between them, by this part
+#: of how far the piece goes, or by more than rounding of where it is.
+_TOO_FAR = 1e-3
+_ROUNDED = 1e-9
+#: Places between rows where that is looked at.
+_LOOKED_AT = np.array([0.07, 0.33, 0.5, 0.67, 0.93])
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +52,8 @@ class Path:
     coefficients: NDArray[np.float64]
     #: The same path by what is known of it in polynomials of two degrees less: how well it is determined.
     coarser: Path | None
+    #: Of a run the same motion by further rows between those that are too far apart to tell it, ascending in time.
+    finer: Path | None = None
 
     def at(self, pieces: NDArray[np.intp], u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give q and q̇, shapes (K, M, n), at fractions u, shape (K, M), of some pieces, shape (K,)."""
@@ -110,15 +119,40 @@ def _path_of_run(out: GeneralizedTrajectory, n: int, ascending: bool) -> Path:
     _times(out.t[back])
     order = back if ascending else slice(None)
     t, states = out.t[order], out._states[order]
-    return _followed(system, t, states) if ascending else _through(system, t, states)
+    if ascending:
+        return _followed(system, t, states, np.arange(len(t) - 1))
+    path = _through(system, t, states)
+    far = _too_far_apart(system, path)
+    if not len(far):
+        return path
+    far = far if t[0] < t[-1] else len(t) - 2 - far
+    return replace(path, finer=_followed(system, out.t[back], out._states[back], far))
 
 
-def _followed(system: GeneralizedSystem, t: NDArray[np.float64], states: NDArray[np.float64]) -> Path:
-    """Give the path through the rows of a run, and between them where the equations of motion lead on from each."""
+def _too_far_apart(system: GeneralizedSystem, path: Path) -> NDArray[np.intp]:
+    """Pieces of a path between rows of a run that its polynomials do not follow the equations of motion along."""
+    pieces, c = np.arange(len(path.t) - 1), path.coefficients
+    q, v = path.at(pieces, np.broadcast_to(_LOOKED_AT, (len(pieces), len(_LOOKED_AT))))
+    h = np.diff(path.t)[:, None]
+    times = path.t[:-1, None] + _LOOKED_AT * h
+    states = np.concatenate([q, v], axis=2).reshape(times.size, -1)
+    with np.errstate(all="ignore"):
+        rates = system._model.rates(times.ravel(), np.ascontiguousarray(states), system._values[None, :])
+    orders = np.arange(2, c.shape[1])
+    bent = np.einsum("kjn,pj->kpn", c[:, 2:] * (orders * (orders - 1))[:, None], _LOOKED_AT[:, None] ** (orders - 2))
+    missed = np.abs(h[:, :, None] ** 2 * rates.reshape(q.shape) - bent).max(axis=1)
+    follows = missed <= _TOO_FAR * np.abs(c[:, 1:]).sum(axis=1) + _ROUNDED * np.abs(c[:, 0])
+    return np.flatnonzero(~follows.all(axis=1))
+
+
+def _followed(
+    system: GeneralizedSystem, t: NDArray[np.float64], states: NDArray[np.float64], looked_at: NDArray[np.intp]
+) -> Path:
+    """Give the path through the rows of a run, and in some pieces where the equations of motion lead on from each."""
     n = states.shape[1] // 2
     size = np.abs(states[:, :n]).max(axis=0)
     size[size == 0.0] = 1.0
-    path, looked_at = _through(system, t, states), np.arange(len(t) - 1)
+    path = _through(system, t, states)
     for _ in range(_ROUNDS):
         middles = path.at(looked_at, np.full((len(looked_at), 1), 0.5))[0][:, 0]
         times, more, parts = [t], [states], np.ones(len(t) - 1, dtype=int)
@@ -152,7 +186,8 @@ def _led_on(
     system: GeneralizedSystem, state: NDArray[np.float64], begin: float, times: NDArray[np.float64]
 ) -> NDArray[np.float64] | None:
     """Give states (T, 2n) at times after one, if the equations of motion lead there."""
-    asked, _ = system._asked(float(times[-1]), "gauss16", 1e-13, None, None)
+    method = ACROSS_KINKS if system._structure["kinks"] else "gauss16"
+    asked, _ = system._asked(float(times[-1]), method, 1e-13, None, None)
     asked |= {"span": (begin, float(times[-1])), "outputs": times}
     result = system._model.run(asked, state[None, :], system._values[None, :], 1, None)
     if result["interrupted"]:

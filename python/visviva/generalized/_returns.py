@@ -16,6 +16,8 @@ from visviva.generalized._methods import ACROSS_KINKS
 from visviva.generalized._whole import whole
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from visviva.generalized._hamiltonian import Hamiltonian
@@ -26,9 +28,11 @@ if TYPE_CHECKING:
 __all__ = [
     "action_by_return",
     "action_of_hamiltonian",
+    "action_of_lagrangian",
     "gauge_part",
     "period_by_return",
     "period_of_hamiltonian",
+    "period_of_lagrangian",
 ]
 
 #: The first keeps the step of its start, and the energy. The second finds kinks, and takes few steps where most of the
@@ -59,15 +63,43 @@ _MOST_PANELS = 4096
 def period_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
     """Give the period of a motion of one coordinate."""
     lagrangian = _by_velocity(system)
-    return period_by_return(system, turn) if lagrangian is None else float(lagrangian._oscillation(turn)[2])
+    return period_by_return(system, turn) if lagrangian is None else period_of_lagrangian(lagrangian, turn)
 
 
 def action_of_hamiltonian(system: Hamiltonian, turn: float | None) -> float:
     """Give its action variable."""
     lagrangian = _by_velocity(system)
-    if lagrangian is not None:
-        return float(lagrangian._oscillation(turn)[3])
-    return action_by_return(system, turn)
+    return action_by_return(system, turn) if lagrangian is None else action_of_lagrangian(lagrangian, turn)
+
+
+def period_of_lagrangian(system: Lagrangian, turn: float | None) -> float:
+    """Give the period of a motion of one coordinate, of an energy that is quadratic in the velocity."""
+    return _by_slopes(system, turn, 2, period_by_return)
+
+
+def action_of_lagrangian(system: Lagrangian, turn: float | None) -> float:
+    """Give its action variable."""
+    return _by_slopes(system, turn, 3, action_by_return)
+
+
+def _by_slopes(
+    system: Lagrangian, turn: float | None, which: int, otherwise: Callable[[Lagrangian, float | None], float]
+) -> float:
+    """Give one number of a quadrature of slopes, or otherwise where that does not tell those beside a kink.
+
+    Over the shortest panel that has the kink within it the slope of |q| has no bounds, and where a steep wall is right
+    beside it all that is left of the energy is lost there. The motion itself passes the kink by an event.
+    """
+    try:
+        return float(system._oscillation(turn)[which])
+    except InvalidInput as refusal:
+        if "no finite number" not in refusal.message or not system._structure["kinks"]:
+            raise
+        try:
+            return otherwise(system, turn)
+        except (ConvergenceError, InvalidInput):
+            # The slope is infinite there.
+            raise refusal from None
 
 
 def period_by_return(system: _Of, turn: float | None) -> float:

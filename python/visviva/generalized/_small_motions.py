@@ -14,9 +14,11 @@ from visviva.generalized._equilibria import Equilibrium, equilibria
 from visviva.generalized._returns import (
     action_by_return,
     action_of_hamiltonian,
+    action_of_lagrangian,
     gauge_part,
     period_by_return,
     period_of_hamiltonian,
+    period_of_lagrangian,
 )
 
 if TYPE_CHECKING:
@@ -79,8 +81,9 @@ class SmallMotions:
         """Places where the system stays, their stability and their frequencies.
 
         Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
-        others, the places that the search comes to are told. On constraints they are where reactions balance forces;
-        with nonholonomic ones they fill surfaces, and without `near` one is told, next to the start.
+        others, the places that the search comes to are told; if its size is not about a turn, two dozen of them.
+        On constraints they are where reactions balance forces; with nonholonomic ones they fill surfaces, and without
+        `near` one is told, next to the start.
 
         Units: those of the system.
 
@@ -184,7 +187,7 @@ class SmallMotions:
         -----
         By Gauss's quadrature of the slope of the energy, over panels in which bounds of all that the Lagrangian is made
         of let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up
-        to it.
+        to it. Where a steep wall leaves too little of the energy beside a kink for that, the motion is followed.
         Landau & Lifshitz, Mechanics, 3rd ed., (11.5).
         Of a Hamiltonian that is not quadratic in the momentum, or a Lagrangian that is not in the velocity, as a
         relativistic one, it is the time of return along the motion itself, to 1e-12 where the function is smooth.
@@ -200,7 +203,7 @@ class SmallMotions:
             return period_of_hamiltonian(self, turn)
         if self._needs_return():
             return period_by_return(self, turn)
-        return float(self._oscillation(turn)[2])
+        return period_of_lagrangian(self, turn)
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
         """The action variable ∮ p dq / 2π of a motion of one degree of freedom.
@@ -238,7 +241,7 @@ class SmallMotions:
             return action_of_hamiltonian(self, turn)
         if self._needs_return():
             return action_by_return(self, turn)
-        return float(self._oscillation(turn)[3])
+        return action_of_lagrangian(self, turn)
 
     def _checked_turn(self: Any, turn: float | None) -> float | None:
         self._conserves()
