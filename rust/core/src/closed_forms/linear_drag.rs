@@ -78,7 +78,7 @@ impl Motion for Drag {
                     let g = g[c];
                     return (x.plus(v.by(way).plus(g.by(fall))), v.by(factor).plus(g.by(way)));
                 }
-                let above = v.plus(w.times(-1.0));
+                let above = v.minus(w);
                 // τ (1 − e⁻ᵘ) = t φ₁.
                 (x.plus(w.by(t).plus(above.by(way))), w.plus(above.by(factor)))
             };

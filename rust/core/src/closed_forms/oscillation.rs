@@ -13,7 +13,7 @@ use super::{ClosedForm, ExactState, Member, Path, Paths, is_uniform, uniform_par
 use crate::forces::ForceTerm;
 use crate::numerics::decay::FAR;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::{Complex, second, third};
+use crate::numerics::exponentials::{Complex, Point, second, third};
 use crate::numerics::scaled::Scaled;
 
 /// Oscillation.
@@ -59,16 +59,16 @@ struct Oscillator {
 
 /// The roots of μ² + 2Γμ + ω².
 pub(super) fn roots(half_rate: Scaled, square: Scaled) -> [Complex; 2] {
-    let discriminant = half_rate.by(half_rate).plus(square.times(-1.0));
+    let discriminant = half_rate.by(half_rate).minus(square);
     let real = |re: Scaled| Complex::new(re, Scaled::ZERO);
     if discriminant.value().to_f64() < 0.0 {
-        let (re, im) = (half_rate.times(-1.0), discriminant.times(-1.0).sqrt());
-        return [Complex::new(re, im), Complex::new(re, im.times(-1.0))];
+        let (re, im) = (half_rate.negative(), discriminant.negative().sqrt());
+        return [Complex::new(re, im), Complex::new(re, im.negative())];
     }
     // The other by their product, without the cancellation.
     let fast = half_rate.plus(discriminant.sqrt());
-    let slow = if fast.value().to_f64() == 0.0 { Scaled::ZERO } else { square.over(fast) };
-    [real(fast.times(-1.0)), real(slow.times(-1.0))]
+    let slow = if fast.is_zero() { Scaled::ZERO } else { square.over(fast) };
+    [real(fast.negative()), real(slow.negative())]
 }
 
 impl Oscillator {
@@ -118,19 +118,32 @@ impl Oscillator {
     }
 }
 
-/// μ₁t and μ₂t, S and S′.
-pub(super) fn responses(roots: &[Complex; 2], t: Scaled) -> ([Complex; 2], Scaled, Scaled) {
-    let along = |z: Complex| Complex::new(z.re.by(t), z.im.by(t));
-    let points = roots.map(along);
-    let blow = second(points[0], points[1]);
-    // S′ = e^{fast} + slow S.
-    let rate = points[0].exp().plus(points[1].by(blow));
-    (points, blow.re.by(t), rate.re)
+/// What answers a blow.
+pub(super) struct Responses {
+    /// μ₁t and μ₂t.
+    pub(super) points: [Point; 2],
+    /// e[μ₁t, μ₂t].
+    difference: Complex,
+    /// S and S′.
+    pub(super) blow: Scaled,
+    pub(super) rate: Scaled,
+}
+
+impl Responses {
+    /// Of an equation with these roots, after a time.
+    pub(super) fn new(roots: &[Complex; 2], t: Scaled) -> Self {
+        let points = Point::pair(roots.map(|root| root.along(t)));
+        let [fast, slow] = &points;
+        let difference = second(fast, slow);
+        // S′ = e^{fast} + slow S.
+        let rate = fast.exponential.plus(slow.at.by(difference)).re;
+        Self { points, difference, blow: difference.re.by(t), rate }
+    }
 }
 
 /// The product, zero whatever the other is if one is: backward, what decays grows beyond measure.
 fn share(of: Scaled, factor: Scaled) -> Scaled {
-    if of.value().to_f64() == 0.0 { Scaled::ZERO } else { of.by(factor) }
+    if of.is_zero() { Scaled::ZERO } else { of.by(factor) }
 }
 
 impl Path for Oscillator {
@@ -138,20 +151,21 @@ impl Path for Oscillator {
         let t = Scaled::new(elapsed, 0);
         let grown = self.roots[0].re.by(t).to_f64() > FAR;
         let infinite = Scaled::from(f64::INFINITY);
-        let ([fast, slow], mut blow, mut rate) = responses(&self.roots, t);
+        let Responses { points: [fast, slow], difference, mut blow, mut rate } =
+            Responses::new(&self.roots, t);
         let settled = self.equilibrium.filter(|_| self.frequency.by(t).to_f64().abs() >= 1.0);
         // C or Q: what multiplies the distance from the equilibrium, or the acceleration at the start.
         let mut other = if settled.is_some() {
-            rate.plus(fast.re.plus(slow.re).by(second(fast, slow).re).times(-1.0))
+            rate.minus(fast.at.re.plus(slow.at.re).by(difference.re))
         } else {
-            third(Complex::default(), fast, slow).re.by(t).by(t)
+            third(&Point::new(Complex::default()), &fast, &slow).re.by(t).by(t)
         };
         if grown {
             (blow, rate, other) = (infinite, infinite, infinite);
         }
         let mut x: [Scaled; 3] = core::array::from_fn(|c| match settled {
             Some(rest) => {
-                let away = self.position[c].plus(rest[c].times(-1.0));
+                let away = self.position[c].minus(rest[c]);
                 rest[c].plus(share(away, other)).plus(share(self.velocity[c], blow))
             }
             None => {
@@ -163,12 +177,10 @@ impl Path for Oscillator {
             core::array::from_fn(|c| share(self.velocity[c], rate).plus(share(self.start[c], blow)));
         for drive in &self.drives {
             let frequency = Scaled::from(drive.frequency);
-            let point = Complex::new(Scaled::ZERO, frequency.by(t));
-            let response = third(point, fast, slow);
-            let response = Complex::new(response.re.by(t).by(t), response.im.by(t).by(t));
+            let point = Point::new(Complex::new(Scaled::ZERO, frequency.by(t)));
+            let response = third(&point, &fast, &slow).along(t).along(t);
             // S + iΩ P.
-            let speed =
-                Complex::new(blow.plus(response.im.by(frequency).times(-1.0)), response.re.by(frequency));
+            let speed = Complex::new(blow.minus(response.im.by(frequency)), response.re.by(frequency));
             let (way, speed) = (drive.phase.by(response).re, drive.phase.by(speed).re);
             let (way, speed) = if grown { (infinite, infinite) } else { (way, speed) };
             for c in 0..3 {

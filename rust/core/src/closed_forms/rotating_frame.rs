@@ -32,7 +32,7 @@ struct Turning {
 fn cross(a: [Scaled; 3], b: [Scaled; 3]) -> [Scaled; 3] {
     core::array::from_fn(|c| {
         let (d, e) = ((c + 1) % 3, (c + 2) % 3);
-        a[d].by(b[e]).plus(a[e].by(b[d]).times(-1.0))
+        a[d].by(b[e]).minus(a[e].by(b[d]))
     })
 }
 

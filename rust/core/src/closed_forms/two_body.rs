@@ -33,7 +33,7 @@ fn constant(member: &Member<'_>) -> Option<f64> {
     let coulomb = |force: &dyn ForceTerm| match force.as_coulomb([0, 1]) {
         Some((k, 0.0)) => {
             let [one, other] = [member.mass[0], member.mass[1]].map(Scaled::from);
-            Some(k.times(-1.0).over(one).over(other))
+            Some(k.negative().over(one).over(other))
         }
         _ => None,
     };

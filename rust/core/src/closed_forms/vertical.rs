@@ -37,9 +37,9 @@ pub fn with_linear_drag(speed: f64, g: f64, tau: f64) -> Throw {
     // x − ln(1 + x), by its series where the difference has no digits left.
     let height = if x.to_f64() < 1e-10 {
         let next = x.times(2.0).over(Scaled::from(3.0));
-        x.by(x).times(0.5).by(Scaled::from(1.0).plus(next.times(-1.0)))
+        x.by(x).times(0.5).by(Scaled::from(1.0).minus(next))
     } else {
-        x.plus(rise.times(-1.0))
+        x.minus(rise)
     };
     let back = way_back(x);
     Throw {
@@ -47,7 +47,7 @@ pub fn with_linear_drag(speed: f64, g: f64, tau: f64) -> Throw {
         apex_time: rise.times(tau).to_f64(),
         apex_height: height.by(scale).to_f64(),
         return_time: back.times(tau).to_f64(),
-        return_speed: back.plus(x.times(-1.0)).by(terminal).to_f64(),
+        return_speed: back.minus(x).by(terminal).to_f64(),
     }
 }
 
@@ -61,10 +61,10 @@ fn way_back(x: Scaled) -> Scaled {
     }
     for _ in 0..NEWTON {
         let Decay { first, second, .. } = Decay::new(u);
-        let value = u.by(second).plus(x.by(first).times(-1.0));
-        let slope = first.plus(second.times(-1.0)).by(s);
+        let value = u.by(second).minus(x.by(first));
+        let slope = first.minus(second).by(s);
         let step = value.over(slope);
-        u = u.plus(step.times(-1.0));
+        u = u.minus(step);
         if step.over(u).to_f64().abs() < 1e-25 {
             break;
         }

@@ -109,7 +109,7 @@ impl ForceTerm for UniformElectricField {
             }
             ticker.tick()?;
         }
-        Ok((work.times(-1.0), work))
+        Ok((work.negative(), work))
     }
     fn validate(&self, view: &Bodies<'_>) -> Result<()> {
         view.check_count("charge", self.charge.len())

@@ -70,7 +70,7 @@ impl ForceTerm for Uniform {
         for c in 0..3 {
             work = work.plus(Scaled::new(joined(moments[c]), unit).times(self.g[c]));
         }
-        Ok((work.times(-1.0), work))
+        Ok((work.negative(), work))
     }
     fn acts(&self, _: &Bodies<'_>) -> bool {
         self.g.iter().any(|&g| g != 0.0)

@@ -33,9 +33,9 @@ impl Decay {
             return Self::near(u.to_double_double());
         }
         let one = Scaled::from(1.0);
-        let factor = exponential(u.times(-1.0));
-        let first = one.plus(factor.times(-1.0)).over(u);
-        Self { factor, first, second: one.plus(first.times(-1.0)).over(u) }
+        let factor = exponential(u.negative());
+        let first = one.minus(factor).over(u);
+        Self { factor, first, second: one.minus(first).over(u) }
     }
 
     fn near(u: DoubleDouble) -> Self {
@@ -66,7 +66,7 @@ mod tests {
 
     /// Across the border between series and exponential: relative differences.
     fn apart(a: Scaled, b: Scaled) -> f64 {
-        a.plus(b.times(-1.0)).over(b).to_f64().abs()
+        a.minus(b).over(b).to_f64().abs()
     }
 
     #[test]
@@ -74,7 +74,7 @@ mod tests {
         for u in [1.0, -1.0, 0.75, -0.5] {
             let near = Decay::near(DoubleDouble::from(u));
             let factor = exponential(Scaled::from(-u));
-            let first = Scaled::from(1.0).plus(factor.times(-1.0)).over(Scaled::from(u));
+            let first = Scaled::from(1.0).minus(factor).over(Scaled::from(u));
             // A few units in the 104th bit, times what the subtractions cancel: 2/|u|.
             assert!(apart(near.factor, factor) < 1e-29 && apart(near.first, first) < 1e-29, "{u}");
         }

@@ -11,6 +11,7 @@ use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 use super::power_of_two::{exponent, scale};
 use super::real::{Real, each};
+use super::stumpff::INVERSE_FACTORIALS;
 
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
@@ -186,11 +187,11 @@ impl Exponential for DoubleDouble {
         let n = (self.high() * core::f64::consts::LOG2_E).round();
         // eʸ - 1 of y = r/256 by Taylor (y¹²/12! < 1e-43), then (1 + e)² - 1 = 2e + e² eight times.
         let y = (self - LN2 * Self::from(n)).scale(1.0 / 256.0);
-        let (mut term, mut sum) = (y, y);
-        for k in 2..12 {
-            term = term * y / Self::from(f64::from(k));
-            sum += term;
+        let mut sum = Self::zero();
+        for &coefficient in INVERSE_FACTORIALS[..10].iter().rev() {
+            sum = sum * y + coefficient;
         }
+        sum = y + y * (y * sum);
         for _ in 0..8 {
             sum = sum.scale(2.0) + sum * sum;
         }

@@ -13,7 +13,7 @@ use super::real::{Mask, Real};
 pub const WIDTH: usize = 8;
 
 /// Eight numbers, 64-byte aligned.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes(pub [f64; WIDTH]);
 

@@ -7,10 +7,13 @@ use super::double_double::DoubleDouble;
 use super::elementary::{self, Exponential};
 use super::real::Real;
 use super::scaled::Scaled;
+use core::array;
+use std::sync::LazyLock;
 
 const LN2: DoubleDouble = DoubleDouble::new(core::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
-/// Terms of the series of artanh: (1/3)^{2·35} < 1e-33.
-const TERMS: i32 = 35;
+/// 1/(2k + 1), those of the series of artanh: (1/3)^{2·35} < 1e-33.
+static ODD_INVERSES: LazyLock<[DoubleDouble; 35]> =
+    LazyLock::new(|| array::from_fn(|k| DoubleDouble::one() / DoubleDouble::from((2 * k + 1) as f64)));
 
 /// ln x of x > 0.
 pub fn ln(x: Scaled) -> Scaled {
@@ -32,8 +35,8 @@ pub fn ln_1p(q: Scaled) -> Scaled {
     let w = ratio.to_double_double();
     let square = w * w;
     let mut sum = DoubleDouble::default();
-    for k in (0..TERMS).rev() {
-        sum = sum * square + DoubleDouble::one() / DoubleDouble::from(f64::from(2 * k + 1));
+    for &inverse in ODD_INVERSES.iter().rev() {
+        sum = sum * square + inverse;
     }
     ratio.by(Scaled::new(sum, 0)).times(2.0)
 }

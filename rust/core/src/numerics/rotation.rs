@@ -59,9 +59,9 @@ impl Rotation {
             (DoubleDouble::default(), DoubleDouble::one())
         };
         let (sine, cosine) = (Scaled::new(sine, 0), Scaled::new(cosine, 0));
-        let c1 = one.plus(cosine.times(-1.0)).over(theta);
+        let c1 = one.minus(cosine).over(theta);
         let s1 = sine.over(theta);
-        let s2 = one.plus(s1.times(-1.0)).over(theta);
+        let s2 = one.minus(s1).over(theta);
         Self { cosine, sine, s1, c1, c2: c1.over(theta), s2 }
     }
 }

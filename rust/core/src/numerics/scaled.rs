@@ -36,6 +36,18 @@ impl Scaled {
         self.exponent
     }
 
+    /// Whether it is zero.
+    #[inline]
+    pub fn is_zero(self) -> bool {
+        self.value.to_f64() == 0.0
+    }
+
+    /// The opposite.
+    #[inline]
+    pub fn negative(self) -> Self {
+        Self { value: -self.value, exponent: self.exponent }
+    }
+
     /// Brings the value near one.
     #[inline]
     fn normal(self) -> Self {
@@ -60,6 +72,12 @@ impl Scaled {
             return Self { value, exponent: self.exponent };
         }
         self.plus_apart(other)
+    }
+
+    /// The difference.
+    #[inline]
+    pub fn minus(self, other: Self) -> Self {
+        self.plus(other.negative())
     }
 
     #[cold]
@@ -147,14 +165,14 @@ mod tests {
         let sum = Scaled::new(DoubleDouble::from(1.0), 2000).plus(Scaled::new(DoubleDouble::from(1.0), 1900));
         let rest = sum.plus(Scaled::new(DoubleDouble::from(-1.0), 2000));
         assert_eq!(rest.times(power_of_two(-1000)).times(power_of_two(-900)).to_f64(), 1.0);
-        assert_eq!(Scaled::from(3.0).plus(large).plus(large.times(-1.0)).to_f64(), 0.0);
+        assert_eq!(Scaled::from(3.0).plus(large).minus(large).to_f64(), 0.0);
     }
 
     #[test]
     fn roots_square_back_beyond_the_range() {
         for exponent in [-3001, -2000, 0, 1, 2999] {
             let x = Scaled::new(DoubleDouble::from(3.0), exponent);
-            let rest = x.sqrt().by(x.sqrt()).plus(x.times(-1.0)).over(x).to_f64();
+            let rest = x.sqrt().by(x.sqrt()).minus(x).over(x).to_f64();
             assert!(rest.abs() < 2e-31, "{exponent}: {rest:e}"); // a few units in the 106th bit
         }
         assert_eq!(Scaled::ZERO.sqrt().to_f64(), 0.0);

@@ -25,7 +25,7 @@ fn of(value: f64) -> DoubleDouble {
 }
 
 fn less(a: Scaled, b: Scaled) -> Scaled {
-    a.plus(b.times(-1.0))
+    a.minus(b)
 }
 
 fn square(a: Scaled) -> Scaled {
@@ -90,7 +90,7 @@ pub(super) fn found(moments: [f64; 3], angular_velocity: [f64; 3]) -> FreeRotati
         ([large, middle, small], above, below, -1.0)
     };
     let r = p.plus(q);
-    let d = if about_largest { side } else { side.times(-1.0) };
+    let d = if about_largest { side } else { side.negative() };
     let sign = |at: usize| if momentum[at].to_f64() < 0.0 { -1.0 } else { 1.0 };
     let frame = Frame::new(axes, sign(axes[0]), sign(axes[2]));
     let l: [Scaled; 3] = core::array::from_fn(|at| momentum[axes[at]].times(frame.signs[at]));

@@ -84,7 +84,7 @@ pub(super) fn look(
             *energies = found;
         }
         let [(kinetic, potential), (kinetic_end, potential_end)] = energies;
-        let change = kinetic_end.plus(potential_end).plus(kinetic.plus(potential).times(-1.0));
+        let change = kinetic_end.plus(potential_end).minus(kinetic.plus(potential));
         // Of the two potential energies the larger: what falls from rest where the potential is zero begins with nothing.
         let size = larger(absolute(potential), absolute(potential_end));
         // What drives give may be all that there is at the end.
@@ -118,7 +118,7 @@ pub(super) fn look(
                 let size = larger(kinetic, kinetic_end).plus(size);
                 let mut change = |times_as_long| {
                     let other = half_steps::energy_at_end(part, request, times_as_long, ticker).ok()??;
-                    let off = other.plus(kinetic_end.plus(potential_end).times(-1.0));
+                    let off = other.minus(kinetic_end.plus(potential_end));
                     Some(off.over(size).to_f64().abs())
                 };
                 // Where twice the steps lead to the same energy, half of them need not be taken.
@@ -140,7 +140,7 @@ pub(super) fn look(
                 let Ok(beside) = energy_of(scene, copy, (&position, &velocity), &mut bodies, ticker) else {
                     return Ok(());
                 };
-                let rounding = beside.0.plus(beside.1).plus(kinetic_end.plus(potential_end).times(-1.0));
+                let rounding = beside.0.plus(beside.1).minus(kinetic_end.plus(potential_end));
                 let rounding = ROUNDINGS * rounding.over(whole).to_f64().abs();
                 if rounding.is_finite() {
                     outcome.energy_error = (outcome.energy_error - rounding).max(0.0);
@@ -222,9 +222,9 @@ fn gained_from_rest(
 }
 
 fn absolute(energy: Scaled) -> Scaled {
-    if energy.value().high() < 0.0 { energy.times(-1.0) } else { energy }
+    if energy.value().high() < 0.0 { energy.negative() } else { energy }
 }
 
 fn larger(a: Scaled, b: Scaled) -> Scaled {
-    if a.plus(b.times(-1.0)).value().high() < 0.0 { b } else { a }
+    if a.minus(b).value().high() < 0.0 { b } else { a }
 }
