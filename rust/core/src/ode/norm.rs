@@ -7,6 +7,7 @@
 //! Equations of no known geometry are held to the root mean square of all numbers instead, each by its own tolerances.
 
 use super::passes::errors::{LargestErrors, MeanErrors, PairTerm};
+use super::passes::series_errors::InverseTolerances;
 use super::state::State;
 use super::step_control::Controlled;
 use super::system::Form;
@@ -137,6 +138,24 @@ impl<S: Controlled> Norm<S> {
         }
         let [first, second] = largest;
         if self.together { [first.largest_lane(), second.largest_lane()] } else { largest }
+    }
+
+    /// Finds one over what each vector of a state may be off, block after block.
+    pub(super) fn inverse_tolerances(&self, state: &State<S>, elapsed: &S, into: &mut Vec<S>) {
+        let halves = if matches!(state.form(), Form::SecondOrder(_)) {
+            [state.q(), state.v()]
+        } else {
+            [state.all().0, &[]]
+        };
+        let center =
+            |weights, block: &Block<S>| self.center(weights, block, halves[usize::from(block.velocity)]);
+        let centers: Vec<[S; 4]> = match &self.weights {
+            Some(weights) => self.blocks.iter().map(|block| center(weights, block)).collect(),
+            None => Vec::new(),
+        };
+        into.resize(self.blocks.iter().map(|block| block.shape.rows).sum(), S::zero());
+        let (blocks, rtol, centers) = (&self.blocks[..], &self.rtol, &centers[..]);
+        S::pass(InverseTolerances { blocks, halves, centers, elapsed, rtol, into });
     }
 
     /// The weighted mean of the vectors of a block.

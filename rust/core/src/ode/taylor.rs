@@ -10,7 +10,8 @@ mod visited;
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{LargestRoot, OwnInverse, Sum, Sums, nest};
+use super::passes::series::{OwnInverse, Sum, Sums, nest};
+use super::passes::series_errors::InverseStep;
 use super::passes::step_by_series::{Choice, Chosen, FAR};
 use super::series::Jet;
 use super::state::State;
@@ -63,6 +64,8 @@ pub struct TaylorStep<S: Element> {
     next: State<S>,
     /// The rates at its end.
     rates: Vec<S>,
+    /// One over what each vector may be off in it.
+    inverse_tolerances: Vec<S>,
 }
 
 impl<S: Controlled> TaylorStep<S> {
@@ -89,6 +92,7 @@ impl<S: Controlled> TaylorStep<S> {
             margin: 1.0,
             next,
             rates,
+            inverse_tolerances: Vec::new(),
         }
     }
 
@@ -102,26 +106,8 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
-    /// One over the step that the coefficients of two orders allow, where vectors are measured.
-    fn inverse_step_of(&self, pair: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
-        let squares = self.sizes(pair, state, elapsed, norm);
-        S::pass(LargestRoot { squares, orders: pair })
-    }
-
-    /// The squared scaled sizes of the coefficients of two orders.
-    fn sizes(&self, orders: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> [S; 2] {
-        let Jet { q, v, len, per_unit, .. } = &self.jet;
-        let term = |of: usize| {
-            let weight = |order| if of == order { S::one() } else { S::zero() };
-            PairTerm { stage: of, weights: [weight(orders[0]), weight(orders[1])] }
-        };
-        let terms = [term(orders[0]), term(orders[1])];
-        let change = |k, factor| Change { k, stride: *len, terms: &terms, factor };
-        norm.sizes(state, state, elapsed, &[change(q, S::one()), change(v, *per_unit)])
-    }
-
     /// One over the longest step that the coefficients allow, in their unit of time.
-    fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
+    fn inverse_step(&self, running: S::Mask, norm: &Norm<S>) -> S {
         let mut highest = self.jet.order;
         // Where two coefficients vanish, those before them tell; a motion that ends with half of all coefficients is exact.
         if norm.blocks.is_empty() {
@@ -129,7 +115,19 @@ impl<S: Controlled> TaylorStep<S> {
             let (tolerance, times, orders) = (&norm.rtol, REFINEMENTS + 1, (highest, highest / 2));
             return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
         }
-        let mut inverse = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
+        let Jet { q, v, len, per_unit, .. } = &self.jet;
+        let of = |highest: usize| {
+            let inverse = S::pass(InverseStep {
+                blocks: &norm.blocks,
+                inverse_tolerances: &self.inverse_tolerances,
+                coefficients: [q, v],
+                len: *len,
+                per_unit,
+                orders: [highest, highest - 1],
+            });
+            if norm.together { inverse.largest_lane() } else { inverse }
+        };
+        let mut inverse = of(highest);
         let last = (highest / 2).max(3);
         while highest - 2 > last {
             highest -= 2;
@@ -137,8 +135,7 @@ impl<S: Controlled> TaylorStep<S> {
             if !untold.and(running).any() {
                 break;
             }
-            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
-            inverse = S::select(untold, found, inverse);
+            inverse = S::select(untold, of(highest), inverse);
         }
         inverse
     }
@@ -219,7 +216,8 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
     ) -> Result<Settled<S>> {
         self.jet.begin(state, clock.elapsed, self.unit);
         system.expand(&mut self.jet, ticker)?;
-        let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
+        norm.inverse_tolerances(state, &clock.elapsed, &mut self.inverse_tolerances);
+        let inverse = self.inverse_step(running, norm);
         let least = S::zero().power_below();
         let mut choose = |step: &mut Self, smooth: &S| {
             let Self { unit, margin, rule, bound, too_long, chosen, h, reached, .. } = step;
@@ -239,7 +237,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         Self::state_at(&self.jet, state, self.h, &mut self.next);
         let looked_at = taken.and(running);
         let astray = if looked_at.any() {
-            looked_at.and(self.leads_astray(state, norm, system, ticker)?)
+            looked_at.and(self.leads_astray(norm, system, ticker)?)
         } else {
             S::Mask::splat(false)
         };

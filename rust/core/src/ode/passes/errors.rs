@@ -85,6 +85,15 @@ impl<S: Element> Pass<S> for LargestErrors<'_, S> {
     }
 }
 
+/// One over what is allowed of a vector whose size has this square. Rough roots will do: a step is no better for a tolerance
+/// kept to more than four digits.
+#[inline(always)]
+pub(super) fn inverse_tolerance<S: InverseCube>(distance2: S, atol: S, rtol: S) -> S {
+    let distance = distance2 * distance2.rough_inverse_root();
+    let tolerance = rtol.multiply_add(distance, atol).min(S::splat(UNLIMITED));
+    (tolerance * tolerance).rough_inverse_root()
+}
+
 /// [`LargestErrors`], the number of components known when compiled.
 #[inline(always)]
 fn largest_vector_errors<S: InverseCube, const C: usize>(
@@ -105,10 +114,7 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
             let distance = y[c * rows + row] - reference[c];
             distance2 = distance.multiply_add(distance, distance2);
         }
-        // Rough roots will do: a step is no better for a tolerance kept to more than four digits.
-        let distance = distance2 * distance2.rough_inverse_root();
-        let scale = rtol.multiply_add(distance, atol).min(S::splat(UNLIMITED));
-        let inverse_scale = (scale * scale).rough_inverse_root();
+        let inverse_scale = inverse_tolerance(distance2, atol, rtol);
         let mut sums = [[S::zero(); C]; 2];
         for &PairTerm { stage, weights } in terms {
             let column = &k[stage * stride + row..][..(C - 1) * rows + 1];

@@ -5,6 +5,7 @@ pub mod extension;
 pub mod multistep;
 pub mod rates;
 pub mod series;
+pub mod series_errors;
 pub mod stages;
 pub mod step_by_series;
 pub mod transformed;

@@ -10,25 +10,8 @@ use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
 
 /// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
-#[derive(Debug)]
-pub(in crate::ode) struct LargestRoot<S> {
-    /// The squares.
-    pub(in crate::ode) squares: [S; 2],
-    /// The orders n.
-    pub(in crate::ode) orders: [usize; 2],
-}
-
-impl<S: Element> Pass<S> for LargestRoot<S> {
-    type Output = S;
-    #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
-        let squares = [V::load(self.squares[0]), V::load(self.squares[1])];
-        largest_root(squares, self.orders).store()
-    }
-}
-
 #[inline(always)]
-fn largest_root<V: InverseCube>(squares: [V; 2], orders: [usize; 2]) -> V {
+pub(super) fn largest_root<V: InverseCube>(squares: [V; 2], orders: [usize; 2]) -> V {
     let mut largest = V::zero();
     for which in 0..2 {
         let root = squares[which].rough_power(0.5 / orders[which] as f64);

@@ -90,7 +90,13 @@ pub(in crate::ode) struct Missed<'a, S> {
 
 /// Σ n bₙ xⁿ⁻¹ of one number's coefficients up to an order, and the largest |cₙ xⁿ| of others.
 #[inline(always)]
-fn slope_and_reach<V: Real>(b: &[V], c: &[V], (len, number): (usize, usize), highest: usize, x: V) -> (V, V) {
+pub(super) fn slope_and_reach<V: Real>(
+    b: &[V],
+    c: &[V],
+    (len, number): (usize, usize),
+    highest: usize,
+    x: V,
+) -> (V, V) {
     let (mut slope, mut reach, mut power) = (V::zero(), V::zero(), V::one());
     let mut place = len + number;
     for n in 1..=highest {
@@ -100,22 +106,6 @@ fn slope_and_reach<V: Real>(b: &[V], c: &[V], (len, number): (usize, usize), hig
         place += len;
     }
     (slope, reach)
-}
-
-impl<S: Element> Pass<S> for Missed<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<S>>(self) {
-        let (rates, blocks) = (V::view_mut(self.rates), V::view(self.blocks));
-        let (unit, len) = (V::load(*self.times[1]), rates.len());
-        let x = V::load(*self.times[0]) / unit;
-        // What a rate moves a number by in the unit of time.
-        let moves = if self.second_order { unit * unit } else { unit };
-        for (number, rate) in rates.iter_mut().enumerate() {
-            let (slope, _) = slope_and_reach(blocks, blocks, (len, number), self.highest, x);
-            *rate = *rate * moves - slope;
-        }
-    }
 }
 
 /// Where numbers that miss by more than so many tolerances of how far they go in a step lead astray in it.

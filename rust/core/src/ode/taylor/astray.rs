@@ -3,11 +3,10 @@
 use super::TaylorStep;
 use crate::error::Result;
 use crate::numerics::real::Mask;
-use crate::ode::norm::{Change, Norm};
-use crate::ode::passes::errors::PairTerm;
+use crate::ode::norm::Norm;
+use crate::ode::passes::series_errors::Astray;
 use crate::ode::passes::step_by_series::{Missed, OwnMissed};
 use crate::ode::series::Jet;
-use crate::ode::state::State;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, System};
 use crate::parallel::Ticker;
@@ -24,13 +23,12 @@ impl<S: Controlled> TaylorStep<S> {
     /// no coefficient tells of, as of a steep wall after a long free way.
     pub(super) fn leads_astray(
         &mut self,
-        state: &State<S>,
         norm: &Norm<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<S::Mask> {
-        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, reached: t, .. } = self;
-        let (len, second_order) = (*len, matches!(next.form(), Form::SecondOrder(_)));
+        let Self { jet: Jet { q, v, order, unit, .. }, next, rates, h, reached: t, .. } = self;
+        let second_order = matches!(next.form(), Form::SecondOrder(_));
         let blocks = if second_order {
             system.acceleration(t, next.q(), next.v(), rates, ticker)?;
             &v[..]
@@ -69,14 +67,14 @@ impl<S: Controlled> TaylorStep<S> {
             }
             return Ok(astray(rates, Some(&rounding)));
         }
-        let missed = Missed { rates, blocks, highest, times, second_order };
-        S::pass(missed);
-        let x = *h / *unit;
-        let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
-        let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
-        let changes = if second_order { [change(x * x), change(x / *unit)] } else { [change(x); 2] };
-        let rounding = norm.rtol / norm.rtol.max(S::splat(ROUNDING));
-        let size2 = norm.sizes(state, next, t, &changes)[0] * rounding * rounding;
-        Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
+        let astray = S::pass(Astray {
+            missed: Missed { rates, blocks, highest, times, second_order },
+            blocks: &norm.blocks,
+            inverse_tolerances: &self.inverse_tolerances,
+            tolerance: &norm.rtol,
+            least: ROUNDING,
+            most: NEXT_ORDERS,
+        });
+        Ok(if norm.together { S::Mask::splat(astray.any()) } else { astray })
     }
 }
