@@ -1,12 +1,13 @@
 //! What a force brings along so that motions under it can be expanded in Taylor series.
 
-use super::{Dynamics, Force, Phase};
+mod linear;
+
+use super::Dynamics;
 use crate::error::{Error, Result};
-use crate::numerics::element::{Element, Pass, View};
-use crate::numerics::lanes::{Lanes, WIDTH};
-use crate::numerics::real::Real;
+use crate::numerics::element::Element;
 use crate::ode::series::Jet;
 use crate::parallel::Ticker;
+pub(super) use linear::{LinearSeries, ONE, Scale};
 
 /// One force of a scene, as a recurrence of Taylor coefficients.
 pub trait Series<S: Element>: Send {
@@ -30,7 +31,38 @@ pub trait Series<S: Element>: Send {
         None
     }
 
-    /// Expands the motion under this force alone.
+    /// Whether it is linear in the place and the velocity of each body, but for a constant.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Writes the accelerations of what is linear in it by a place, or a velocity, of one along an axis, of each body; there
+    /// are so many rows.
+    ///
+    /// # Errors
+    /// As [`Force::apply`]; [`Error::Internal`] of one that is not linear.
+    fn column(
+        &mut self,
+        axis: usize,
+        velocity: bool,
+        a: &mut [S],
+        of: (usize, &mut Ticker<'_>),
+    ) -> Result<()> {
+        let _ = (axis, velocity, a, of);
+        Err(Error::Internal("columns of what is not linear".to_owned()))
+    }
+
+    /// Whether it expands motions under others that are linear, too.
+    fn takes_linear(&self) -> bool {
+        false
+    }
+
+    /// Takes others, which are linear, to [expand](Self::expand) motions under all.
+    fn take_linear(&mut self, linear: Vec<Box<dyn Series<S>>>) {
+        let _ = linear;
+    }
+
+    /// Expands the motion under this force alone, and what it has taken.
     ///
     /// # Errors
     /// As [`Force::apply`].
@@ -52,7 +84,14 @@ pub(super) struct AllSeries<S> {
 impl<S: Element> Dynamics<S> {
     /// With the series of its forces, in their order.
     #[must_use]
-    pub fn with_series(mut self, forces: Vec<Box<dyn Series<S>>>) -> Self {
+    pub fn with_series(mut self, mut forces: Vec<Box<dyn Series<S>>>) -> Self {
+        let place = forces.iter().position(|force| force.takes_linear());
+        let others = |place| forces.iter().enumerate().filter(move |(other, _)| *other != place);
+        if let Some(place) = place.filter(|&place| others(place).all(|(_, force)| force.is_linear())) {
+            let mut whole = forces.remove(place);
+            whole.take_linear(core::mem::take(&mut forces));
+            forces.push(whole);
+        }
         self.series = Some(AllSeries { forces, a: vec![S::zero(); self.shape.len()] });
         self
     }
@@ -79,76 +118,5 @@ impl<S: Element> Dynamics<S> {
     pub(super) fn series_smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
         let forces = self.series.iter().flat_map(|series| &series.forces);
         forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
-    }
-}
-
-/// A force that is linear in coordinates and velocities but for a constant.
-///
-/// The one idea: what such a force makes of coefficients it makes of them as of coordinates and velocities, so its kernel
-/// is its series.
-pub(super) struct LinearSeries {
-    /// The force, and what is linear in it, if anything is.
-    force: Box<dyn Force<Lanes>>,
-    linear: Option<Box<dyn Force<Lanes>>>,
-    /// Room for velocities and accelerations in the units of the kernels.
-    v: Vec<Lanes>,
-    a: Vec<Lanes>,
-}
-
-impl LinearSeries {
-    /// From the kernel of a force, and that of the same without its constant.
-    pub(super) fn boxed(
-        force: Box<dyn Force<Lanes>>,
-        linear: Option<Box<dyn Force<Lanes>>>,
-    ) -> Option<Box<dyn Series<Lanes>>> {
-        Some(Box::new(Self { force, linear, v: Vec::new(), a: Vec::new() }))
-    }
-}
-
-impl Series<Lanes> for LinearSeries {
-    fn coefficient(
-        &mut self,
-        n: usize,
-        jet: &Jet<Lanes>,
-        a: &mut [Lanes],
-        first: bool,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
-        let kernel = if n == 0 { Some(&mut self.force) } else { self.linear.as_mut() };
-        let Some(kernel) = kernel else {
-            if first {
-                a.fill(Lanes::zero());
-            }
-            return Ok(());
-        };
-        self.v.resize(jet.len, Lanes::zero());
-        self.a.resize(jet.len, Lanes::zero());
-        let (per_unit, by_unit) = ([&jet.per_unit, &ONE], [&jet.unit, &jet.unit]);
-        Lanes::pass(Scale { from: jet.velocity(n), factors: per_unit, into: &mut self.v, first: true });
-        kernel.apply(&Phase { t: &jet.t, q: jet.position(n), v: &self.v }, &mut self.a, true, ticker)?;
-        Lanes::pass(Scale { from: &self.a, factors: by_unit, into: a, first });
-        Ok(())
-    }
-}
-
-pub(super) const ONE: Lanes = Lanes([1.0; WIDTH]);
-
-/// Numbers times the product of two factors, written if `first`, else added.
-pub(super) struct Scale<'a> {
-    pub(super) from: &'a [Lanes],
-    pub(super) factors: [&'a Lanes; 2],
-    pub(super) into: &'a mut [Lanes],
-    pub(super) first: bool,
-}
-
-impl Pass<Lanes> for Scale<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<Lanes>>(self) {
-        let factor = V::load(*self.factors[0]) * V::load(*self.factors[1]);
-        for (into, &from) in V::view_mut(self.into).iter_mut().zip(V::view(self.from)) {
-            let term = from * factor;
-            *into = if self.first { term } else { *into + term };
-        }
     }
 }

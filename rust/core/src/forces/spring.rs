@@ -113,7 +113,7 @@ impl ForceTerm for Springs {
     /// Without lengths springs are linear. With one, a spring that is pressed together to nothing on a line has a series
     /// that goes on, and the force turns about.
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
-        LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
+        LinearSeries::between_bodies(self.kernel(context), Some(self.kernel(context)))
     }
     fn series_in_every_lane(&self) -> bool {
         true

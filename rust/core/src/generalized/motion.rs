@@ -133,7 +133,7 @@ impl<S: Width + Coefficient + Controlled> System<S> for Motion<S> {
         let second_order = matches!(self.form, Form::SecondOrder(_));
         let Jet { order, len, ref mut q, ref mut v, t, unit, ref inverse, .. } = *jet;
         let (velocity, t) = (self.needs.velocity, self.t0 + t);
-        let equations = Equations { second_order, velocity, t, unit, inverse };
+        let equations = Equations { second_order, velocity, t, unit, inverse, seen: None };
         series.motion(&equations, Coefficients { order, len, q, v });
         Ok(())
     }

@@ -21,7 +21,7 @@ use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::real::Real;
 use crate::tiered;
 use motion::Room;
-pub use motion::{Coefficients, Equations};
+pub use motion::{Beside, Coefficients, Equations, Seen};
 use recurrence::Recurrences;
 use std::sync::Arc;
 

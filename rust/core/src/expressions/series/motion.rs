@@ -24,6 +24,32 @@ pub struct Equations<'a, S> {
     pub unit: S,
     /// 1/n.
     pub inverse: &'a [Scaled<S>],
+    /// If the motion is counted otherwise than the expressions see it, or moved by more than them.
+    pub seen: Option<Seen<'a, S>>,
+}
+
+/// How expressions see the motion of a body, and what else moves it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a, S> {
+    /// What the unit of time is multiplied with.
+    pub time: &'a S,
+    /// What velocities are multiplied with.
+    pub velocity: &'a S,
+    /// What accelerations are multiplied with: above zero, or zero where there is no body.
+    pub rate: &'a S,
+    /// What else moves it, if anything does.
+    pub beside: Option<&'a Beside<S>>,
+}
+
+/// Accelerations of a body that are linear in its place and velocity, in the unit of time of the coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Beside<S> {
+    /// At the beginning.
+    pub first: [S; 3],
+    /// Of each of its coordinates, component after component.
+    pub of_places: [[S; 3]; 3],
+    /// Of each of its velocities.
+    pub of_velocities: [[S; 3]; 3],
 }
 
 /// Coefficients of a motion, order after order: those of order 0 are there (and of the second order the velocities'), the
@@ -56,22 +82,30 @@ impl<S: Coefficient> Expansion<S> {
 }
 
 #[inline(always)]
-fn motion<S: Copy, V: View<S> + Scalar>(
+fn motion<S: Copy, V: View<S> + Scalar, const SEEN: bool>(
     room: Room<'_, S>,
     equations: &Equations<'_, S>,
     into: Coefficients<'_, S>,
 ) {
-    let Equations { second_order, velocity, t, unit, inverse } = *equations;
+    let Equations { second_order, velocity, t, unit, inverse, seen } = *equations;
     let Series { body, inputs, outputs, variables, inverses, numbers: many, .. } = room.series;
     let (numbers, scratch) = (V::view_mut(room.numbers), V::view_mut(room.scratch));
     let Coefficients { order, len, q, v } = into;
     let (q, v, unit) = (V::view_mut(q), V::view_mut(v), V::load(unit));
     assert!(order <= HIGHEST, "no room for the order {order}");
-    let per_unit = V::one() / unit;
-    let unit_of_rates = if second_order { unit * unit } else { unit };
+    let (mut time_unit, mut per_unit) = (unit, V::one() / unit);
+    let mut unit_of_rates = if second_order { unit * unit } else { unit };
+    let mut beside = None;
+    if let (true, Some(seen)) = (SEEN, seen) {
+        time_unit = time_unit * V::load(*seen.time);
+        per_unit = per_unit * V::load(*seen.velocity);
+        unit_of_rates = unit_of_rates * V::load(*seen.rate);
+        beside = seen.beside;
+    }
+    let acts = V::zero().less(unit_of_rates);
     let with_velocity = second_order && velocity;
     let time = inputs[*variables];
-    (numbers[time], numbers[time + 1], numbers[time + 2]) = (V::load(t), unit, V::zero());
+    (numbers[time], numbers[time + 1], numbers[time + 2]) = (V::load(t), time_unit, V::zero());
     // Indices in slices of one length need no further look, and no more to begin with.
     let (of_q, of_rates) = (&inputs[..len], &outputs[..len]);
     let of_v = if with_velocity { &inputs[len..][..len] } else { of_q };
@@ -96,6 +130,10 @@ fn motion<S: Copy, V: View<S> + Scalar>(
         }
         let (once, twice) = (scaled::<S, V>(&inverse[n + 1]), scaled::<S, V>(&inverse[n + 2]));
         let numbers = Numbers::new(numbers, *many);
+        let mut more = [V::zero(); 3];
+        if let (true, Some(beside)) = (SEEN, beside) {
+            more = beside.at::<V>(n, &q[n * len..], &v[n * len..]);
+        }
         let first = if second_order { &mut *v } else { &mut *q };
         let raised = &mut first[(n + 1) * len..][..len];
         for i in 0..len {
@@ -108,7 +146,12 @@ fn motion<S: Copy, V: View<S> + Scalar>(
             } else {
                 V::zero()
             };
-            raised[i] = over(rate * unit_of_rates, once);
+            let mut rate = rate * unit_of_rates;
+            if SEEN {
+                // Where there is no body the expressions may be anything.
+                rate = V::select(acts, rate, V::zero()) + more[i % 3];
+            }
+            raised[i] = over(rate, once);
         }
         if second_order {
             let (raised, again) = (&v[(n + 1) * len..][..len], &mut q[(n + 2) * len..][..len]);
@@ -116,6 +159,25 @@ fn motion<S: Copy, V: View<S> + Scalar>(
                 again[i] = over(raised[i], twice);
             }
         }
+    }
+}
+
+impl<S: Copy> Beside<S> {
+    /// The coefficients of an order.
+    #[inline(always)]
+    fn at<V: View<S>>(&self, n: usize, places: &[V], velocities: &[V]) -> [V; 3] {
+        let mut sums = [V::zero(); 3];
+        for i in 0..3 {
+            if n == 0 {
+                sums[i] = V::load(self.first[i]);
+                continue;
+            }
+            for j in 0..3 {
+                sums[i] = V::load(self.of_places[i][j]).multiply_add(places[j], sums[i]);
+                sums[i] = V::load(self.of_velocities[i][j]).multiply_add(velocities[j], sums[i]);
+            }
+        }
+        sums
     }
 }
 
@@ -130,13 +192,21 @@ fn lanes_body<V: Vector8 + Scalar + View<Lanes>>(
     equations: &Equations<'_, Lanes>,
     into: Coefficients<'_, Lanes>,
 ) {
-    motion::<Lanes, V>(room, equations, into);
+    if equations.seen.is_some() {
+        motion::<Lanes, V, true>(room, equations, into);
+    } else {
+        motion::<Lanes, V, false>(room, equations, into);
+    }
 }
 
 #[inline(always)]
 #[expect(clippy::extra_unused_type_parameters, reason = "the tier gives its instructions, not its lanes")]
 fn one_body<V: Vector8>(room: Room<'_, f64>, equations: &Equations<'_, f64>, into: Coefficients<'_, f64>) {
-    motion::<f64, f64>(room, equations, into);
+    if equations.seen.is_some() {
+        motion::<f64, f64, true>(room, equations, into);
+    } else {
+        motion::<f64, f64, false>(room, equations, into);
+    }
 }
 
 tiered! {

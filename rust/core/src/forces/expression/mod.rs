@@ -3,7 +3,9 @@
 //! The one idea: what a user writes is a graph in the scene's own coordinates and units, with derivatives taken on it; a
 //! scene that is shifted, turned or rescaled changes the few numbers that lead from its bodies to those coordinates.
 
+mod alone;
 mod compiled;
+mod expanded;
 mod kernel;
 
 use super::Force;
@@ -22,7 +24,8 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::units::{Dimension, Units};
-use kernel::{Expanded, Kernel};
+use expanded::Expanded;
+use kernel::Kernel;
 use std::sync::Arc;
 
 /// Numbers that expressions are of: a place and a velocity.
