@@ -74,10 +74,7 @@ impl Columns {
 
     /// Remembers how large numbers were in the steps that were tried, as for one trajectory.
     pub(super) fn remember(&mut self, tried: Bits, kept: Bits) {
-        for (size, &most) in self.sizes.iter_mut().zip(&self.tried) {
-            let beside = Lanes::select(kept, most, most.max(Lanes::splat(FADING) * *size));
-            *size = Lanes::select(tried, beside, *size);
-        }
+        remembered(self, tried, kept);
     }
 }
 
@@ -359,7 +356,17 @@ pub(super) fn found(work: &mut Work<'_>) -> Settled {
     all
 }
 
+#[inline(always)]
+fn remembered_body<V: Vector8>(columns: &mut Columns, tried: Bits, kept: Bits) {
+    for (size, &most) in columns.sizes.iter_mut().zip(&columns.tried) {
+        let (before, most) = (V::load(*size), V::load(most));
+        let beside = V::select(kept, most, most.max(V::splat(FADING) * before));
+        *size = V::select(tried, beside, before).store();
+    }
+}
+
 tiered! {
+    fn remembered[][](columns: &mut Columns, tried: Bits, kept: Bits) = remembered_body;
     fn iterate[][](work: &mut Work<'_>) -> Settled = iterate_body;
     fn began_wildly[][](work: &Work<'_>) -> Bits = began_wildly_body;
 }

@@ -10,7 +10,7 @@ use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
 use super::columns_end::advance;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
-use super::told::{felt, led, led_to};
+use super::told::{felt, kept, led, led_to};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Beyond, Method, Table};
 use crate::error::Result;
@@ -305,9 +305,7 @@ impl Trial<Lanes> for GaussEight {
 
     fn keep(&mut self, accepted: Bits, state: &mut State<Lanes>) {
         state.take_over(&self.next, accepted);
-        for (before, rate) in self.before.iter_mut().flatten().zip(self.columns.rates.iter().flatten()) {
-            *before = Lanes::select(accepted, *rate, *before);
-        }
+        kept(&self.columns.rates, accepted, &mut self.before);
         self.length = Lanes::select(accepted, self.length_tried, self.length);
         for (lane, pace) in self.paces.iter_mut().enumerate() {
             pace.kept += u64::from(accepted.lane(lane));

@@ -4,8 +4,10 @@
 //! of one.
 
 use super::Table;
-use super::columns::{Columns, Row, combined, larger};
+use super::columns::{Columns, NOTHING, Row, combined, larger};
+use super::rounding::HARDLY;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::numerics::real::Mask;
 use crate::ode::system::Form;
 use crate::tiered;
 
@@ -49,6 +51,47 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
     most.store()
 }
 
+/// How far the polynomials of the steps before lead astray, as parts of sizes; in the first steps of these lanes, how much
+/// their last terms add. What rounding explains, which is so many times the largest rate, is nothing.
+#[inline(always)]
+fn smoothness_body<V: Vector8>(
+    table: &Table,
+    columns: &Columns,
+    (rounding, h): (Lanes, Lanes),
+    first: Bits,
+) -> Lanes {
+    let stages = table.stages;
+    let mut largest = V::zero();
+    for row in &columns.rates {
+        largest = V::load(astray_body::<V>(row, &NOTHING, stages)).max(largest);
+    }
+    let (rounding, hardly) = (V::load(rounding) * largest, largest * V::splat(HARDLY));
+    let mut most = V::zero();
+    for ((row, guess), &scale) in columns.rates.iter().zip(&columns.guess).zip(&columns.scales) {
+        let mut away = astray_body::<V>(row, guess, stages);
+        for lane in 0..WIDTH {
+            if first.lane(lane) {
+                away.0[lane] = table.leading(|k| row[k].0[lane]);
+            }
+        }
+        let away = V::load(away);
+        let hardly_moves = V::load(astray_body::<V>(row, &NOTHING, stages)).less_equal(hardly);
+        let away = V::select(away.less_equal(rounding).and(hardly_moves), V::zero(), away);
+        most = (away * V::load(h).abs() * V::load(scale)).max(most);
+    }
+    most.store()
+}
+
+/// Puts the rates of steps that were kept into the place of those before.
+#[inline(always)]
+fn kept_body<V: Vector8>(rates: &[Row], kept: Bits, before: &mut [Row]) {
+    for (before, rates) in before.iter_mut().zip(rates) {
+        for (before, &rate) in before.iter_mut().zip(rates) {
+            *before = V::select(kept, V::load(rate), V::load(*before)).store();
+        }
+    }
+}
+
 /// By how much the step changes velocities, as parts of them, in every lane; of the first order, where rates that differ between
 /// stages change numbers with the square of the step, the root of that.
 #[inline(always)]
@@ -84,9 +127,10 @@ fn missed_body<V: Vector8>(
 }
 
 tiered! {
+    pub(super) fn smoothness[][](table: &Table, columns: &Columns, of: (Lanes, Lanes), first: Bits) -> Lanes = smoothness_body;
+    pub(super) fn kept[][](rates: &[Row], kept: Bits, before: &mut [Row]) -> () = kept_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
     pub(super) fn missed[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
     pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
-    pub(super) fn astray[][](rates: &Row, guess: &Row, stages: usize) -> Lanes = astray_body;
 }

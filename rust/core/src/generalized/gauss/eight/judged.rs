@@ -1,9 +1,7 @@
 //! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
 //! stages, and what lies between these unseen.
 
-use super::super::columns::{Columns, NOTHING};
-use super::super::rounding::HARDLY;
-use super::super::told::{astray, missed};
+use super::super::told::{missed, smoothness};
 use super::GaussEight;
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -15,27 +13,13 @@ impl GaussEight {
     /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
     /// rounding explains is nothing.
     pub(super) fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
-        let mut most = Lanes::zero();
-        let Columns { rates, guess, scales, .. } = &self.columns;
-        let size = |rates| astray(rates, &NOTHING, self.table.stages);
-        let largest = rates.iter().map(size).fold(Lanes::zero(), |largest, size| size.max(largest));
-        let mut rounding = largest;
+        let mut rounding = Lanes::one();
         for (lane, pace) in self.paces.iter().enumerate() {
             let steps = (self.length.0[lane], h.0[lane]);
-            rounding.0[lane] *= self.beyond.rounding.astray(self.table, pace.kept, steps);
+            rounding.0[lane] = self.beyond.rounding.astray(self.table, pace.kept, steps);
         }
-        for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
-            let mut away = astray(rates, guess, self.table.stages);
-            for (lane, pace) in self.paces.iter().enumerate() {
-                if running.lane(lane) && pace.kept == 0 {
-                    away.0[lane] = self.table.leading(|k| rates[k].0[lane]);
-                }
-            }
-            let hardly_moves = size(rates).less_equal(largest * Lanes::splat(HARDLY));
-            let away = Lanes::select(away.less_equal(rounding).and(hardly_moves), Lanes::zero(), away);
-            most = (away * h.abs() * scale).max(most);
-        }
-        most
+        let first = self.lanes(|_, pace| pace.kept == 0).and(running);
+        smoothness(self.table, &self.columns, (rounding, h), first)
     }
 
     /// By how much the rates at the ends of steps are not those that the stages lead to, where that is to be asked.
