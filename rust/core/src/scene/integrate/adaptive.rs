@@ -341,18 +341,14 @@ impl<'a> Run<'a> {
         }
         if let Some(followers) = self.followers.as_mut().filter(|_| guiding) {
             let told = (self.layout == Layout::Packed, followers.moving);
+            let (trial, state) = ((&*self.trial, &self.fractions[..]), &self.state);
+            let lay = |path: &mut Path| path.lay(&self.first, trial, state, outcome.h, told);
             let span = Span {
                 lanes: outcome.accepted,
                 from: outcome.from,
                 to: self.clock.elapsed,
                 last: outcome.finished,
-                path: Arc::new(Path::new(
-                    &self.first,
-                    (&*self.trial, &self.fractions),
-                    &self.state,
-                    outcome.h,
-                    told,
-                )),
+                path: followers.paths.next(lay),
             };
             followers.through(&span, ticker)?;
         }
@@ -364,12 +360,14 @@ impl<'a> Run<'a> {
         let slots = self.slots[..self.layout.units()].iter();
         let units: Vec<&Prepared> =
             slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
+        // Behind the last that moves there is nobody to be told of.
+        let taken = self.slots.iter().rposition(Option::is_some).map_or(1, |last| last + 1);
         let index = self.slots[0].as_ref().map(|slot| slot.index);
         match &mut self.forces {
             // The first unit of all, in all lanes, has those with which the run was made.
             Forces::Own(_) if self.layout == Layout::Packed && index == Some(0) => {}
             Forces::Along(guided) => guided.take_up(self.job.plan, &units),
-            own => *own = Forces::own(self.job, &units, self.threads),
+            own => *own = Forces::own(self.job, &units[..taken], self.threads),
         }
         self.clock.restart(fresh, self.part.length);
         let Self { trial, state, clock, forces, norm, .. } = self;

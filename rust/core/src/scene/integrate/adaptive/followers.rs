@@ -8,7 +8,7 @@ use super::super::super::layout::Layout;
 use super::super::super::unit::{Prepared, Unit};
 use super::super::report::Ending;
 use super::super::{Job, Report, Result};
-use super::guide::{Guided, Path};
+use super::guide::{Guided, Path, Paths};
 use super::{Forces, Run};
 use crate::forces::term::Coupling;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -35,13 +35,22 @@ pub(super) struct Followers<'a> {
     units: &'a [&'a [Unit]],
     outputs: Arc<[f64]>,
     runs: Vec<Run<'a>>,
+    /// The ways of the massive ones.
+    pub(super) paths: Paths,
     /// Whether they ask for the velocities of massive bodies.
     pub(super) moving: bool,
 }
 
 impl<'a> Followers<'a> {
     pub(super) fn new(job: &'a Job<'a>, units: &'a [&'a [Unit]], outputs: &Arc<[f64]>) -> Self {
-        Self { job, units, outputs: Arc::clone(outputs), runs: Vec::new(), moving: false }
+        Self {
+            job,
+            units,
+            outputs: Arc::clone(outputs),
+            runs: Vec::new(),
+            paths: Paths::default(),
+            moving: false,
+        }
     }
 
     /// Whether there are any in the run.

@@ -18,14 +18,14 @@ use crate::ode::state::State;
 use crate::ode::system::{Form, Needs, System};
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 mod series;
 use series::{Coefficients, Shifted};
 
 /// Where massive bodies are during a step of theirs, one system in each lane or the same in all: for each coordinate
 /// `q + (e + θ(f0 + (1-θ)(f1 + θ(f2 + …))))` at the fraction θ of the step.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Path {
     /// How long the step is.
     pub(super) h: Lanes,
@@ -39,48 +39,63 @@ pub(super) struct Path {
     coefficients: Option<Coefficients>,
     /// The times of the stages of a step as long as this one, and where the bodies are then, once somebody has asked.
     stages: Vec<(Lanes, OnceLock<Vec<Lanes>>)>,
+    /// Room for those, and for blocks of bodies that are packed.
+    spare: Mutex<Vec<Vec<Lanes>>>,
+    packed: Vec<Lanes>,
+}
+
+/// Paths along the last two steps: who follows the later one has left the other, whose room serves the next.
+#[derive(Default)]
+pub(super) struct Paths([Option<Arc<Path>>; 2]);
+
+impl Paths {
+    /// That along the next step, once it is laid.
+    pub(super) fn next(&mut self, lay: impl FnOnce(&mut Path)) -> Arc<Path> {
+        let [older, last] = &mut self.0;
+        let mut path = older.take().and_then(|path| Arc::try_unwrap(path).ok()).unwrap_or_default();
+        lay(&mut path);
+        let path = Arc::new(path);
+        *older = last.replace(Arc::clone(&path));
+        path
+    }
 }
 
 impl Path {
-    /// Of the step that the trial has tried from a state, once its continuous extension is ready; its stages are at these
-    /// fractions of it. Where massless bodies ask for velocities, with those.
-    pub(super) fn new(
+    /// Lays it along the step that the trial has tried from a state, once its continuous extension is ready; its stages are at
+    /// these fractions of it. Where massless bodies ask for velocities, with those.
+    pub(super) fn lay(
+        &mut self,
         unit: &Prepared,
         (trial, fractions): (&dyn Trial<Lanes>, &[Lanes]),
         state: &State<Lanes>,
         h: Lanes,
         (packed, moving): (bool, bool),
-    ) -> Self {
+    ) {
         let (q, rest) = state.position();
-        let mut blocks = [q, rest].concat();
-        trial.extension(state, h, &mut blocks);
-        let numbers = unit.unit.active * unit.shape.components;
+        let blocks = if packed { &mut self.packed } else { &mut self.blocks };
+        blocks.clear();
+        blocks.extend_from_slice(q);
+        blocks.extend_from_slice(rest);
+        trial.extension(state, h, blocks);
         if packed {
-            blocks = Self::apart(unit, &blocks, q.len());
+            apart(unit, &self.packed, q.len(), &mut self.blocks);
         }
-        let coefficients = trial.series().map(|jet| Coefficients::new(unit, jet, packed));
-        let stages = fractions.iter().map(|&fraction| (h * fraction, OnceLock::new())).collect();
-        Self { h, numbers, moving, blocks, coefficients, stages }
+        (self.h, self.moving, self.numbers) = (h, moving, unit.unit.active * unit.shape.components);
+        match trial.series() {
+            Some(jet) => self.coefficients.get_or_insert_default().take_up(unit, jet, packed),
+            None => self.coefficients = None,
+        }
+        let spare = self.spare.get_mut().unwrap_or_else(PoisonError::into_inner);
+        self.stages.resize_with(fractions.len(), Default::default);
+        for ((time, places), &fraction) in self.stages.iter_mut().zip(fractions) {
+            *time = h * fraction;
+            spare.extend(places.take());
+        }
     }
 
     /// How many numbers tell where the bodies are, and how they move if that is asked for.
     fn told(&self) -> usize {
         if self.moving { 2 * self.numbers } else { self.numbers }
-    }
-
-    /// Of packed bodies each in all lanes: their numbers in blocks of a length.
-    fn apart(unit: &Prepared, blocks: &[Lanes], len: usize) -> Vec<Lanes> {
-        let rows = len / unit.shape.components;
-        let mut apart = Vec::with_capacity(blocks.len() / len * unit.unit.active * unit.shape.components);
-        for block in blocks.chunks(len) {
-            for component in block.chunks(rows) {
-                for slot in 0..unit.unit.active {
-                    let (row, lane) = unit.locate(slot, 0);
-                    apart.push(Lanes::splat(component[row].0[lane]));
-                }
-            }
-        }
-        apart
     }
 
     /// Writes where the bodies are at the time `t` since the start of the step, and then how they move if that is asked for:
@@ -95,10 +110,26 @@ impl Path {
         let is_then = |time: &Lanes| (0..WIDTH).all(|lane| time.0[lane] == t.0[lane] || !lanes.lane(lane));
         let (time, places) = self.stages.iter().find(|(time, _)| is_then(time))?;
         Some(places.get_or_init(|| {
-            let mut places = vec![Lanes::zero(); self.told()];
+            let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
+            let mut places = spare.unwrap_or_default();
+            places.resize(self.told(), Lanes::zero());
             self.at(time, &mut places);
             places
         }))
+    }
+}
+
+/// Of packed bodies each in all lanes: their numbers in blocks of a length.
+fn apart(unit: &Prepared, blocks: &[Lanes], len: usize, into: &mut Vec<Lanes>) {
+    let rows = len / unit.shape.components;
+    into.clear();
+    for block in blocks.chunks(len) {
+        for component in block.chunks(rows) {
+            for slot in 0..unit.unit.active {
+                let (row, lane) = unit.locate(slot, 0);
+                into.push(Lanes::splat(component[row].0[lane]));
+            }
+        }
     }
 }
 
@@ -221,8 +252,7 @@ impl Guided {
             Term::Other(force, _) => needs.and(force.needs()),
         });
         let blocks = vec![Lanes::zero(); 3 * numbers];
-        let path =
-            Path { h: Lanes::one(), numbers, moving: false, blocks, coefficients: None, stages: Vec::new() };
+        let path = Path { h: Lanes::one(), numbers, blocks, ..Path::default() };
         Ok(Self {
             components: guide.shape.components,
             path: Arc::new(path),

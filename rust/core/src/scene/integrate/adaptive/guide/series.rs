@@ -4,7 +4,7 @@
 //! coefficients are those of the places that pull.
 
 use super::super::super::super::unit::Prepared;
-use super::{Guided, Path, Term};
+use super::{Guided, Term, apart};
 use crate::error::{Error, Result};
 use crate::forces::following::MassiveSeries;
 use crate::numerics::double_double::two_sum;
@@ -15,7 +15,7 @@ use crate::ode::series::Jet;
 use crate::parallel::Ticker;
 
 /// Coefficients of the places of massive bodies in powers of the time since their step began.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Coefficients {
     /// Blocks of as many numbers as a path has, from order 0 on.
     blocks: Vec<Lanes>,
@@ -26,15 +26,19 @@ pub(super) struct Coefficients {
 }
 
 impl Coefficients {
-    /// Of a step of massive bodies; packed, each of them goes to all lanes.
-    pub(super) fn new(unit: &Prepared, jet: &Jet<Lanes>, packed: bool) -> Self {
-        let blocks = jet.q[..(jet.order + 2) * jet.len].to_vec();
-        let rests = jet.rests[0].clone();
+    /// Takes up those of a step of massive bodies; packed, each of them goes to all lanes.
+    pub(super) fn take_up(&mut self, unit: &Prepared, jet: &Jet<Lanes>, packed: bool) {
+        let (blocks, rests) = (&jet.q[..(jet.order + 2) * jet.len], &jet.rests[0]);
+        self.unit = jet.unit;
         if packed {
-            let apart = |blocks: &[Lanes]| Path::apart(unit, blocks, jet.len);
-            return Self { blocks: apart(&blocks), rests: apart(&rests), unit: jet.unit };
+            apart(unit, blocks, jet.len, &mut self.blocks);
+            apart(unit, rests, jet.len, &mut self.rests);
+        } else {
+            self.blocks.clear();
+            self.blocks.extend_from_slice(blocks);
+            self.rests.clear();
+            self.rests.extend_from_slice(rests);
         }
-        Self { blocks, rests, unit: jet.unit }
     }
 }
 
