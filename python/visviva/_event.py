@@ -67,6 +67,10 @@ class Event(Record):
             raise InvalidInput(
                 "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
             )
+        if self.kind == "function":
+            from visviva.events import sees_turning
+
+            parameters["sees_turning"] = sees_turning(parameters["function"])
         return {
             "kind": self.kind,
             **parameters,

@@ -60,12 +60,13 @@ def with_body_indices(events: list[dict[str, Any]], names: tuple[str, ...]) -> l
 
 def descriptions(events: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """What a result and its file keep of the events that the core was told of: of a function its name."""
-    return [
-        {**event, "function": None, "name": str(getattr(event["function"], "__qualname__", type(event["function"])))}
-        if event["kind"] == "function"
-        else event
-        for event in events
-    ]
+    return [_named(event) if event["kind"] == "function" else event for event in events]
+
+
+def _named(event: dict[str, Any]) -> dict[str, Any]:
+    call = event["function"]
+    kept = {key: value for key, value in event.items() if key != "sees_turning"}
+    return kept | {"function": None, "name": str(getattr(call, "__qualname__", type(call)))}
 
 
 def from_description(description: dict[str, Any]) -> Event:

@@ -27,6 +27,7 @@ __all__ = [
     "known_keywords",
     "one_of",
     "refuse_subclass",
+    "takes",
     "unknown_name",
 ]
 
@@ -296,3 +297,14 @@ def check_call(
         ) from None
     except ValueError:  # one that does not tell what it takes
         pass
+
+
+def takes(function: Callable[..., Any], places: tuple[str, ...]) -> bool:
+    """Whether a function can be called with so many; one that does not tell what it takes may be."""
+    try:
+        signature(function).bind(*places)
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True

@@ -24,7 +24,7 @@ import numpy as np
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event import Event, make_event
 from visviva._event_table import EventTable
-from visviva._keywords import check_call, known_keywords, unknown_name
+from visviva._keywords import check_call, known_keywords, takes, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.typing import EventDirection, SymbolicExpression
+
+    _Rows = NDArray[np.float64]
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -335,7 +337,7 @@ def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int 
 
 @known_keywords
 def function(
-    call: Callable[[float, NDArray[np.float64], NDArray[np.float64]], float],
+    call: Callable[[float, _Rows, _Rows], float] | Callable[[float, _Rows, _Rows, _Rows, _Rows], float],
     *,
     direction: EventDirection = 0,
     terminal: bool | int = False,
@@ -346,6 +348,9 @@ def function(
     times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them; the
     direction is that in time, also in a run backwards, where SciPy's is that along the run.
 
+    Beside rigid bodies one that takes five arguments is called as ``call(t, position, velocity, orientation,
+    angular_velocity)``, the last two of shapes (R, 4) and (R, 3), as results have them.
+
     In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,). An
     `expression` is better there where it is one: it is compiled, and no zero is missed between two looks.
 
@@ -354,7 +359,8 @@ def function(
     Parameters
     ----------
     call : callable
-        ``call(t, position, velocity)``, which gives a number; an event is where that passes zero.
+        ``call(t, position, velocity)``, or with orientations and angular velocities after them, which gives a number; an
+        event is where that passes zero.
     direction, terminal : optional
         As of `plane` and `distance`.
 
@@ -366,21 +372,41 @@ def function(
     Raises
     ------
     visviva.InvalidInput
-        For what cannot be called with these three, or a direction or an end that is none of these.
+        For what cannot be called with these, or a direction or an end that is none of these; by a run, for a function
+        that takes orientations where there are no rigid bodies.
 
     Examples
     --------
-    >>> import visviva as vv
+    >>> import numpy as np, visviva as vv
     >>> scene = vv.problems.kepler(e=0.5).scene
     >>> def height(t, position, velocity):
     ...     return position[1, 1] - position[0, 1]
     >>> len(scene.run(t=20.0, events=[height]).events)
     6
+
+    When a book that was thrown up is upside down:
+
+    >>> book = vv.RigidBody(1.0, inertia=np.diag([1.0, 2.0, 2.5]), angular_velocity=[0.01, 2.0, 0.0])
+    >>> def upright(t, position, velocity, orientation, angular_velocity):
+    ...     return vv.rigid.rotate(orientation[0], [0.0, 1.0, 0.0])[1]
+    >>> len(vv.Scene(book).run(t=40.0, events=[upright]).events)
+    3
     """
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
-    check_call("call", call, ("t", "position", "velocity"))
+    if not sees_turning(call):
+        check_call("call", call, _OF_POINTS)
     return make_event("function", direction, terminal, function=call)
+
+
+#: What a function is called with, and beside rigid bodies.
+_OF_POINTS = ("t", "position", "velocity")
+_OF_RIGID_BODIES = (*_OF_POINTS, "orientation", "angular_velocity")
+
+
+def sees_turning(call: Callable[..., float]) -> bool:
+    """Whether a function takes orientations and angular velocities, too."""
+    return not takes(call, _OF_POINTS) and takes(call, _OF_RIGID_BODIES)
 
 
 def __dir__() -> list[str]:

@@ -11,7 +11,7 @@ from visviva._arrays import number
 from visviva._event import direction_of
 from visviva._event_table import Lines
 from visviva._exported import Columns, chosen_columns
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import check_call, did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 from visviva.events import Event, coordinate, expression
 from visviva.generalized._nodes import Nodes
@@ -107,6 +107,7 @@ def _event_to_core(system: States, index: int, event: Event) -> dict[str, Any]:
         case "energy":
             to_send["energy"] = parameters["value"]
         case _ if "function" in parameters:
+            check_call("events", parameters["function"], ("t", "position", system._second_name))
             to_send["function"] = parameters["function"]
         case kind:
             raise InvalidInput("events", f"events[{index}]: expected an event of visviva.events, got the kind {kind!r}")

@@ -13,6 +13,7 @@ pub use sight::{Moving, Sight, apart};
 use super::Scene;
 use super::frame::{Moved, Origin, restored};
 use super::plan::Groups;
+use super::unit::Turned;
 use crate::conservation::columns::{Snapshot, column};
 use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
@@ -22,8 +23,18 @@ use core::fmt;
 
 use std::sync::Arc;
 
-/// A function of time, positions and velocities, the numbers of one body after those of another.
-pub type Function = dyn Fn(f64, &[f64], &[f64]) -> Result<f64> + Send + Sync;
+/// A function of time, positions and velocities, the numbers of one body after those of another, and of how the rigid bodies
+/// are turned, if it looks at that.
+pub type Call = dyn Fn(f64, &[f64], &[f64], &[Turned]) -> Result<f64> + Send + Sync;
+
+/// Somebody else's function.
+#[derive(Clone)]
+pub struct Function {
+    /// What is called.
+    pub call: Arc<Call>,
+    /// Whether it looks at how rigid bodies are turned.
+    pub sees_turning: bool,
+}
 
 /// About what a body has its apsides.
 #[derive(Clone, Debug)]
@@ -65,7 +76,7 @@ pub enum What {
     /// Spheres come to touch, any two of them; these pairs are in contact at the start.
     Contact(Arc<[(usize, usize)]>),
     /// Somebody else's function is zero.
-    Function(Arc<Function>),
+    Function(Function),
 }
 
 impl fmt::Debug for What {
@@ -110,6 +121,8 @@ pub struct View<'a> {
     pub origin: &'a Origin,
     /// Time since the start.
     pub elapsed: f64,
+    /// How rigid bodies are turned, for those who look at that.
+    pub turned: &'a [Turned],
 }
 
 impl View<'_> {
@@ -160,6 +173,11 @@ impl Event {
         matches!(self.what, What::Function(_))
     }
 
+    /// Whether it looks at how rigid bodies are turned.
+    pub fn sees_turning(&self) -> bool {
+        matches!(&self.what, What::Function(function) if function.sees_turning)
+    }
+
     /// What it sees. The bodies that it looks at are at these places in the view.
     ///
     /// # Errors
@@ -177,7 +195,7 @@ impl Event {
         match &self.what {
             What::Distance { .. } | What::Plane { .. } | What::Apsis { .. } | What::Contact(_) => {}
             What::Energy(level) => sight.value = energy(view, around, ticker)? - level,
-            What::Function(function) => sight.value = call(&**function, view, around)?,
+            What::Function(function) => sight.value = call(function, view, around)?,
         }
         Ok(sight)
     }
@@ -219,7 +237,8 @@ impl Event {
     }
 
     /// Refuses what cannot be looked at.
-    fn check(&self, index: usize, particles: usize) -> Result<()> {
+    fn check(&self, index: usize, scene: &Scene) -> Result<()> {
+        let particles = scene.particles;
         let refused = |message: String| Err(Error::invalid("events", format!("events[{index}]: {message}")));
         for body in self.looks_at().unwrap_or_default() {
             if body >= particles {
@@ -254,6 +273,11 @@ impl Event {
             What::Energy(level) if !level.is_finite() => {
                 refused(format!("expected a finite energy, got {}", number(*level)))
             }
+            What::Function(function) if function.sees_turning && scene.rigid.is_none() => {
+                let message = "expected a function f(t, position, velocity), got one that takes orientations too, and \
+                               the scene has no rigid bodies";
+                refused(message.to_owned())
+            }
             _ if self.last == Some(0) => refused("expected terminal of at least 1, got 0".to_owned()),
             _ => Ok(()),
         }
@@ -264,8 +288,8 @@ impl Event {
 ///
 /// # Errors
 /// By name, with what was expected and what came.
-pub fn check(events: &[Event], particles: usize) -> Result<()> {
-    events.iter().enumerate().try_for_each(|(index, event)| event.check(index, particles))
+pub fn check(events: &[Event], scene: &Scene) -> Result<()> {
+    events.iter().enumerate().try_for_each(|(index, event)| event.check(index, scene))
 }
 
 fn call(function: &Function, view: &View<'_>, around: &Surroundings<'_>) -> Result<f64> {
@@ -278,7 +302,7 @@ fn call(function: &Function, view: &View<'_>, around: &Surroundings<'_>) -> Resu
             (position[3 * body + c], velocity[3 * body + c]) = (x[c].0, v[c].0);
         }
     }
-    function(around.scene.t0 + view.elapsed, &position, &velocity)
+    (function.call)(around.scene.t0 + view.elapsed, &position, &velocity, view.turned)
 }
 
 fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {

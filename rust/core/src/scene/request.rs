@@ -167,7 +167,7 @@ impl Request {
                 return Err(unknown("record", column, known()));
             }
         }
-        events::check(&self.events, scene.particles)?;
+        events::check(&self.events, scene)?;
         let direction = self.direction(scene)?;
         self.check_tolerances(method, scene)?;
         if let Some(step) = self.max_step {

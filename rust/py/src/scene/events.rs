@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use visviva_core::scene::events::{Event, Focus, What};
+use visviva_core::scene::events::{Event, Focus, Function, What};
+use visviva_core::scene::unit::Turned;
 use visviva_core::{Error, Result};
 
 /// What a Python function among the events has raised.
@@ -105,7 +106,9 @@ fn event(
         "function" => {
             let given = Arc::new(AtomicBool::new(false));
             functions.numbers.push((place, given.clone()));
-            function(item("function")?.unbind(), particles, functions.raised.clone(), given)
+            let sees_turning = item("sees_turning")?.extract()?;
+            let call = item("function")?.unbind();
+            function((call, sees_turning), particles, functions.raised.clone(), given)
         }
         other => {
             let message = format!("expected one of visviva.events, got the kind {other}");
@@ -129,18 +132,30 @@ pub(crate) fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
-fn function(function: Py<PyAny>, particles: usize, exceptions: Raised, given: Arc<AtomicBool>) -> What {
-    let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
+fn function(
+    (function, sees_turning): (Py<PyAny>, bool),
+    particles: usize,
+    exceptions: Raised,
+    given: Arc<AtomicBool>,
+) -> What {
+    let call = move |t: f64, position: &[f64], velocity: &[f64], turned: &[Turned]| -> Result<f64> {
         let value = exceptions.called(|py| {
             let shape = [particles, 3];
             let position = moved(py, position.to_vec(), &shape)?;
             let velocity = moved(py, velocity.to_vec(), &shape)?;
-            number(function.call1(py, (t, position, velocity))?.bind(py))
+            if !sees_turning {
+                return number(function.call1(py, (t, position, velocity))?.bind(py));
+            }
+            let orientations = turned.iter().flat_map(|(orientation, _)| *orientation).collect();
+            let spins = turned.iter().flat_map(|(_, angular_velocity)| *angular_velocity).collect();
+            let orientation = moved(py, orientations, &[turned.len(), 4])?;
+            let angular_velocity = moved(py, spins, &[turned.len(), 3])?;
+            number(function.call1(py, (t, position, velocity, orientation, angular_velocity))?.bind(py))
         })?;
         if !value.is_nan() {
             given.store(true, Ordering::Relaxed);
         }
         Ok(value)
     };
-    What::Function(Arc::new(call))
+    What::Function(Function { call: Arc::new(call), sees_turning })
 }

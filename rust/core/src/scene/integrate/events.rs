@@ -16,7 +16,9 @@ mod nearest;
 mod search;
 mod spheres;
 mod spheres_abreast;
+mod step;
 mod touching;
+mod turning;
 mod turns;
 
 use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What};
@@ -32,6 +34,8 @@ pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use contacts::{Contacts, Pair};
+pub(super) use step::{Interpolant, Span};
+use turning::Turns;
 
 /// A zero that was found.
 #[derive(Clone, Debug)]
@@ -48,49 +52,6 @@ pub struct Found {
     pub turned: Vec<Turned>,
     /// The spheres that touch, if it is that.
     pub spheres: Option<(usize, usize)>,
-}
-
-/// A step of a unit, in the plan's units, and what may be asked about its inside.
-pub(super) trait Interpolant {
-    /// The state at a fraction of the step.
-    ///
-    /// # Errors
-    /// Those of an evaluation.
-    fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>>;
-
-    /// As [`at`](Self::at), for who looks at positions: velocities are about those.
-    ///
-    /// # Errors
-    /// Those of an evaluation.
-    fn positions_at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
-        self.at(theta, ticker)
-    }
-
-    /// How one coordinate moves in a lane: the terms of [`polynomial`](crate::ode::trial::Trial::polynomial). None are
-    /// added by who has no polynomial.
-    ///
-    /// # Errors
-    /// Those of an evaluation.
-    fn polynomial(
-        &mut self,
-        coordinate: usize,
-        lane: usize,
-        into: &mut Vec<[f64; 2]>,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<()>;
-}
-
-/// From where to where a step leads, as elapsed time in the plan's units.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
-    pub(super) from: f64,
-    pub(super) to: f64,
-}
-
-impl Span {
-    fn at(self, theta: f64) -> f64 {
-        if theta == 1.0 { self.to } else { self.from + theta * (self.to - self.from) }
-    }
 }
 
 /// The events of one unit under watch.
@@ -111,6 +72,8 @@ pub(super) struct Watch<'a> {
     inside: Vec<Moving>,
     sights: Vec<Sight>,
     next: Vec<Sight>,
+    /// How rigid bodies are turned, for who looks at that.
+    turns: Option<Turns>,
     /// The events that may have zeros in the step at hand.
     suspects: Vec<usize>,
     /// The terms of each coordinate of each body on that step.
@@ -184,6 +147,7 @@ impl<'a> Watch<'a> {
             after: at_rest.clone(),
             inside: at_rest,
             sights: vec![Sight::default(); events.len()],
+            turns: Turns::new(job, unit, lane)?,
             next: vec![Sight::default(); events.len()],
             suspects: Vec::new(),
             terms: Vec::new(),
@@ -197,6 +161,7 @@ impl<'a> Watch<'a> {
             events,
         };
         watch.bodies.read(state, &mut watch.before);
+        watch.turn(unit, state, job.begun());
         let copy = unit.unit.copy;
         watch.contacts = spheres.map(|(index, touching)| {
             let spheres = (scene.radii(copy), &**touching);
@@ -247,6 +212,13 @@ impl<'a> Watch<'a> {
         (&self.job.plan.events[*index], places)
     }
 
+    /// Reads how rigid bodies are turned in a state, so long after the start, if anybody looks at that.
+    fn turn(&mut self, unit: &Prepared, state: &State<Lanes>, elapsed: f64) {
+        if let Some(turns) = &mut self.turns {
+            turns.read(self.job, unit, state, elapsed);
+        }
+    }
+
     /// What an event sees of these bodies after this time.
     #[inline]
     fn sight(
@@ -257,7 +229,8 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Sight> {
         let elapsed = scale(elapsed, self.job.plan.units.time);
-        let view = View { bodies, origin: &unit.origin, elapsed };
+        let turned = self.turns.as_ref().map_or(&[][..], |turns| &turns.now);
+        let view = View { bodies, origin: &unit.origin, elapsed, turned };
         let around = Surroundings {
             scene: self.job.scene,
             copy: unit.unit.copy,
@@ -280,6 +253,7 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<bool> {
         self.bodies.read(state, &mut self.after);
+        self.turn(unit, state, span.to);
         let h = scale(span.to - span.from, self.job.plan.units.time);
         self.suspects.clear();
         for event in 0..self.events.len() {
@@ -315,6 +289,7 @@ impl<'a> Watch<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.bodies.read(state, &mut self.before);
+        self.turn(unit, state, elapsed);
         if let Some(contacts) = &mut self.contacts {
             contacts.go_on(&self.before);
         }
@@ -373,6 +348,7 @@ impl<'a> Watch<'a> {
             self.counts[event] += 1;
             if self.event(event).0.last.is_some_and(|last| self.counts[event] >= last) {
                 self.bodies.read(state, &mut self.inside);
+                self.turn(unit, state, span.at(theta));
                 self.tell_what_is_over(unit, &zeros[place + 1..], (&found, span.at(theta)), ticker)?;
                 self.found.push(found);
                 self.stopped = true;

@@ -87,7 +87,8 @@ fn value(what: &What, scene: &Scene, ticker: &mut Ticker<'_>) -> Result<Option<f
             Some(kinetic.plus(potential).to_f64() - level)
         }
         What::Function(function) => {
-            Some(function(scene.t0, position.as_flattened(), velocity.as_flattened())?)
+            // Spheres that collide are no rigid bodies.
+            Some((function.call)(scene.t0, position.as_flattened(), velocity.as_flattened(), &[])?)
         }
         What::Distance { .. } | What::Plane { .. } | What::Contact(_) => None,
     })

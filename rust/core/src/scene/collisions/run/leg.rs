@@ -4,7 +4,7 @@ use super::super::{Impact, contact};
 use crate::error::Result;
 use crate::forces::remaining::Remaining;
 use crate::scene::Scene;
-use crate::scene::events::{Event, Focus, Function, What};
+use crate::scene::events::{Call, Event, Focus, Function, What};
 use std::sync::Arc;
 
 impl Remaining {
@@ -78,21 +78,20 @@ impl Remaining {
                 What::Apsis { body: place(body), about: Focus::Body(place(other)) }
             }
             What::Apsis { body, about } => What::Apsis { body: place(body), about: about.clone() },
-            What::Function(function) if self.some_have_gone() => {
-                What::Function(self.with_all(Arc::clone(function)))
-            }
+            What::Function(function) if self.some_have_gone() => What::Function(self.with_all(function)),
             What::Energy(_) | What::Contact(_) | What::Function(_) => what.clone(),
         })
     }
 
     /// A function that is called with the bodies that are parts of others, too.
-    fn with_all(&self, function: Arc<Function>) -> Arc<Function> {
-        let places = self.places.clone();
-        Arc::new(move |t, position: &[f64], velocity: &[f64]| -> Result<f64> {
+    fn with_all(&self, function: &Function) -> Function {
+        let (places, inner) = (self.places.clone(), Arc::clone(&function.call));
+        let call: Arc<Call> = Arc::new(move |t, position, velocity, turned| {
             let all = |of: &[f64]| -> Vec<f64> {
                 places.iter().flat_map(|&place| of[3 * place..3 * place + 3].iter().copied()).collect()
             };
-            function(t, &all(position), &all(velocity))
-        })
+            inner(t, &all(position), &all(velocity), turned)
+        });
+        Function { call, ..*function }
     }
 }

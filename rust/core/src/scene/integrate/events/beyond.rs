@@ -47,6 +47,7 @@ impl Search<'_, '_> {
             }
             let state = step.at(theta, ticker)?;
             self.watch.bodies.read(state, &mut self.watch.inside);
+            self.watch.turn(self.unit, state, self.span.at(theta));
             let sight = self.sight_inside(theta, ticker)?;
             let (value, rounding) = (sight.value, self.watch.event(self.event).0.rounding(&sight));
             if value.abs() <= rounding || (value > 0.0) == rises {

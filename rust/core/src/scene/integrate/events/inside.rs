@@ -100,10 +100,31 @@ impl Search<'_, '_> {
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<Sight> {
-        if self.watch.terms.is_empty() || self.watch.settles {
+        if self.watch.terms.is_empty() || self.watch.settles || self.sees_turning() {
             let state = if velocities { step.at(theta, ticker)? } else { step.positions_at(theta, ticker)? };
             self.watch.bodies.read(state, &mut self.watch.inside);
+            self.watch.turn(self.unit, state, self.span.at(theta));
             self.sight_inside(theta, ticker)
+        } else {
+            self.sight_between(theta, ticker)
+        }
+    }
+
+    /// Whether the event looks at how rigid bodies are turned, of which no polynomial tells.
+    fn sees_turning(&self) -> bool {
+        self.watch.event(self.event).0.sees_turning()
+    }
+
+    /// Where a step is looked through: on the polynomial, or on the cubics where there is none; for who looks at how rigid
+    /// bodies are turned, on the solution.
+    pub(super) fn sight_on_the_way(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Sight> {
+        if self.sees_turning() {
+            self.sight_at(theta, step, ticker)
         } else {
             self.sight_between(theta, ticker)
         }

@@ -132,7 +132,7 @@ impl Search<'_, '_> {
             [&self.watch.sights[self.event], &self.watch.next[self.event]].map(|sight| self.rate(sight));
         let (mut points, mut rates) = (vec![(0.0, self.ends[0])], vec![start]);
         for theta in self.samples() {
-            let sight = self.sight_between(theta, ticker)?;
+            let sight = self.sight_on_the_way(theta, step, ticker)?;
             points.push((theta, sight.value));
             rates.push(self.rate(&sight));
         }
@@ -141,13 +141,13 @@ impl Search<'_, '_> {
         let begins = self.ends[0] == 0.0 && self.span.from == self.watch.job.begun();
         if begins && start.is_none_or(|rate| rate * points[1].1 <= 0.0) {
             let before = before_the_first(points[1], |theta| {
-                let sight = self.sight_between(theta, ticker)?;
+                let sight = self.sight_on_the_way(theta, step, ticker)?;
                 let rounding = self.watch.event(self.event).0.rounding(&sight);
                 let nothing = self.watch.nothing.get(self.event).map_or(rounding, |&own| rounding.max(own));
                 Ok(if sight.value.abs() <= nothing { 0.0 } else { sight.value })
             })?;
             if let Some(point) = before {
-                let sight = self.sight_between(point.0, ticker)?;
+                let sight = self.sight_on_the_way(point.0, step, ticker)?;
                 points.insert(1, point);
                 rates.insert(1, self.rate(&sight));
             }
@@ -179,7 +179,7 @@ impl Search<'_, '_> {
             if !self.counts(self.ends[0]) {
                 return Ok(Vec::new());
             }
-            let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
+            let theta = zero(bracket, |theta| Ok(self.sight_on_the_way(theta, step, ticker)?.value))?;
             let near = (theta, slope_of(bracket));
             return Ok(vec![(self.one_zero(self.whole(), near, step, ticker)?, self.ends[0] < 0.0)]);
         }
