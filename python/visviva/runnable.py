@@ -89,7 +89,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
             knows the integrator's states; one computed later, from positions and velocities, may differ in its last
             bits.
         events : sequence, optional
-            Of `visviva.events`, or functions ``f(t, position, velocity)``: their zeros on the way come back in
+            Of `visviva.events`, or functions ``f(t, position, velocity)``, beside rigid bodies also
+            ``f(t, position, velocity, orientation, angular_velocity)``: their zeros on the way come back in
             ``out.events``. They change no bit of the run. A terminal one ends it: rows, ``final`` and the table end
             there, with `Status.STOPPED`; where `t` is an end time, the last row of a single run is that of the event.
             No closed form is used. An ensemble with functions runs on one thread.
