@@ -142,8 +142,8 @@ class ExportedTally:
         Returns
         -------
         pandas.DataFrame
-            Its index are the bins as intervals, closed on the left (the last bin has its end, too). What is outside of
-            them and what was captured is in ``frame.attrs``.
+            Its index are the bins as intervals, closed on the left (the last bin has its end, too). Each column has
+            shape (B,). What is outside of the bins and what was captured is in ``frame.attrs``.
 
         Raises
         ------
