@@ -8,8 +8,11 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
+from visviva import _core
 from visviva._keywords import known_keywords
 from visviva._packages import needed
+from visviva.scattering._beam import described
+from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import weighted_counts
 
 if TYPE_CHECKING:
@@ -21,8 +24,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pandas import DataFrame, IntervalIndex
     from xarray import Dataset
-
-    from visviva.scattering._beam import Beam
 
 __all__ = ["ExportedTally", "OfStrata", "dataset", "intervals"]
 
@@ -63,7 +64,12 @@ class ExportedTally:
     def _columns(self) -> dict[str, NDArray[Any]]:
         """What is told of each bin."""
         weighted = {"values": self.values(), "variances": self.variances()} if self._is_weighted else {}
-        return {"counts": self._whole()[(slice(1, -1),) * len(self._axes())], **weighted}
+        return {"counts": self._whole()[self._inner], **weighted}
+
+    @property
+    def _inner(self) -> tuple[slice, ...]:
+        """Of `_whole` the bins."""
+        return (slice(1, -1),) * len(self._axes())
 
     def to_hist(self) -> Hist[Storage]:
         """The counts as a ``hist.Hist`` with an axis for each quantity, with underflow and overflow.
@@ -166,10 +172,9 @@ class ExportedTally:
         return frame
 
 
-class OfStrata(ExportedTally):
+class OfStrata(OfEvents, ExportedTally):
     """Base of tallies of a beam, of which `importance` weights the strata."""
 
-    beam: Beam
     by_stratum: NDArray[np.uint64] | None
 
     @property
@@ -178,6 +183,46 @@ class OfStrata(ExportedTally):
 
     def _whole_weighted(self, power: int) -> NDArray[np.float64]:
         return weighted_counts(self, power, self._whole())
+
+    def expected(self) -> NDArray[np.float64]:
+        """What ``values()`` are on the average, by the deflection function: of each bin the area of its places.
+
+        Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
+        certified table), all branches and energies together.
+
+        Returns
+        -------
+        ndarray, shape (B,) or (B₁, B₂)
+            Numbers without dimension. Of two quantities together the sum over a whole axis is what is expected of the
+            other one.
+
+        Raises
+        ------
+        InvalidInput
+            With an energy spread, of an angle that a divergence smears, and of what channels differ in if their
+            probabilities depend on the impact parameter: no area of impact parameters tells those.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> tally = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
+        ...     tally={"cm_angle": vv.scattering.Bins.solid_angle(4)})["cm_angle"]
+        >>> tally.expected().round(6)
+        array([250., 250., 250., 250.])
+        >>> pair = ("cm_angle", "recoil_energy")
+        >>> tally = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
+        ...     tally={pair: (vv.scattering.Bins.solid_angle(4), 2)})[pair]
+        >>> tally.expected().round(6)
+        array([[250.,   0.],
+               [250.,   0.],
+               [  0., 250.],
+               [  0., 250.]])
+        """
+        parts = _core.monte_carlo_expected(beam=described(self.beam), tallies=[list(self._axes())])
+        whole = parts[0][:-1].reshape([len(edges) + 1 for _, edges in self._axes()])
+        return whole[self._inner] * self.n_events
 
 
 def intervals(name: str, edges: NDArray[np.float64]) -> IntervalIndex:

@@ -14,7 +14,6 @@ from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import OfStrata, intervals
-from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added_strata, read_only, same, variances
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ __all__ = ["JointTally"]
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class JointTally(OfEvents, OfStrata, Record):  # noqa: PLW1641 — as Tally
+class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -102,7 +101,7 @@ class JointTally(OfEvents, OfStrata, Record):  # noqa: PLW1641 — as Tally
         >>> float(run["lab_angle", "energy"].values().sum())
         1000.0
         """
-        return self._whole_weighted(1)[1:-1, 1:-1]
+        return self._whole_weighted(1)[self._inner]
 
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, as those of `Tally.variances`.
@@ -121,7 +120,7 @@ class JointTally(OfEvents, OfStrata, Record):  # noqa: PLW1641 — as Tally
         >>> run["lab_angle", "energy"].variances().shape
         (10, 10)
         """
-        return variances(self.values(), self._whole_weighted(2)[1:-1, 1:-1], self.n_events)
+        return variances(self.values(), self._whole_weighted(2)[self._inner], self.n_events)
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.

@@ -12,10 +12,8 @@ from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
-from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
 from visviva.scattering._exported import OfStrata
-from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_counts
 
 if TYPE_CHECKING:
@@ -58,7 +56,7 @@ class CrossSection(NamedTuple):
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class Tally(OfEvents, OfStrata, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class Tally(OfStrata, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -200,35 +198,6 @@ class Tally(OfEvents, OfStrata, Record):  # noqa: PLW1641 — it holds arrays, w
         if self.by_stratum is not None:
             raise InvalidInput("importance", "expected events of one weight, got strata; variances() has their errors")
         return poisson_interval(self.counts)
-
-    def expected(self) -> NDArray[np.float64]:
-        """What ``values()`` are on the average, by the deflection function: of each bin the area of its places.
-
-        Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
-        certified table), all branches and energies together.
-
-        Returns
-        -------
-        ndarray, shape (B,)
-            Numbers without dimension.
-
-        Raises
-        ------
-        InvalidInput
-            With an energy spread, of an angle that a divergence smears, and of what channels differ in if their
-            probabilities depend on the impact parameter: no area of impact parameters tells those.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> tally = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
-        ...     tally={"cm_angle": vv.scattering.Bins.solid_angle(4)})["cm_angle"]
-        >>> tally.expected().round(6)
-        array([250., 250., 250., 250.])
-        """
-        parts = _core.monte_carlo_expected(beam=described(self.beam), tallies=[[(self.name, self.edges)]])
-        return parts[0][1:-2] * self.n_events
 
     def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
         """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
