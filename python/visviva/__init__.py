@@ -35,7 +35,9 @@ _HOME = {
     "Damper": "forces",
     "Drag": "forces",
     "Drift": "conservation",
+    "DriftOfCopies": "ensemble_conservation",
     "DrivenForce": "forces",
+    "EnsembleConservation": "ensemble_conservation",
     "EnsembleScene": "ensemble",
     "EnsembleTrajectory": "ensemble_trajectory",
     "Error": "errors",
@@ -126,7 +128,9 @@ __all__ = [
     "Damper",
     "Drag",
     "Drift",
+    "DriftOfCopies",
     "DrivenForce",
+    "EnsembleConservation",
     "EnsembleScene",
     "EnsembleTrajectory",
     "Error",
@@ -225,6 +229,7 @@ if TYPE_CHECKING:
     from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene
+    from visviva.ensemble_conservation import DriftOfCopies, EnsembleConservation
     from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.errors import (
         AccuracyWarning,

@@ -21,6 +21,7 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from typing import NoReturn
 
 __all__ = ["Declared", "as_comparable", "class_from_entry", "unit_change"]
 
@@ -35,6 +36,7 @@ class Declared:
     _at_rest: ClassVar[str]
     _one_way: ClassVar[str]
     _checked_together: ClassVar[tuple[str, ...]] = ()  # what is refused for the values of others, too
+    _no_sum: ClassVar[str]  # what to do in the place of a sum
 
     def __post_init__(self) -> None:
         for parameter in self._parameters:
@@ -69,6 +71,13 @@ class Declared:
             return NotImplemented
         theirs = other._values()
         return all(np.array_equal(_as_kept(value), _as_kept(theirs[name])) for name, value in self._values().items())
+
+    if not TYPE_CHECKING:  # to which there is no sum of them
+
+        def __add__(self, other: object) -> NoReturn:
+            raise TypeError(self._no_sum)
+
+        __radd__ = __add__
 
     def __hash__(self) -> int:
         return hash((type(self), *map(as_comparable, self._values().values())))

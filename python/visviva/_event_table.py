@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 import numpy as np
 
 from visviva._arrays import whole_number
-from visviva._exported import Columns, Exported, chosen_columns, labels
+from visviva._exported import ByColumns, Columns, chosen_columns, labels
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -32,7 +32,7 @@ _ABOUT = ("definitions", "coordinates", "names")
 
 
 @known_keywords
-class Lines(Exported[Name], Shown):
+class Lines(ByColumns[Name], Shown):
     """Base of tables of events: columns, a line for each event, and what was looked for."""
 
     __slots__ = ()
@@ -136,7 +136,8 @@ class EventTable(Lines["EventColumnName"]):
     names : tuple of str
         Those of the bodies, or none.
 
-    Indexing with a slice or an array gives a smaller table; `of` that of one event.
+    Indexing with a slice or an array gives a smaller table; `of` that of one event. Tables are equal if all their
+    columns are, NaN where NaN is, and what was looked for.
 
     References
     ----------

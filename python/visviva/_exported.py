@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from dataclasses import Field, dataclass, field, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-__all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels"]
+__all__ = ["AXES", "ByColumns", "Columns", "Exported", "chosen_columns", "labels"]
 
 Name = TypeVar("Name", bound=str)
 
@@ -208,6 +208,26 @@ class Exported(Generic[Name]):
 
         export = self._exported(columns)
         write(path_text("path", path), groups(export, self._row_axes), dict(export.attributes), "to_parquet")
+
+
+class ByColumns(Exported[Name]):  # noqa: PLW1641 — it holds arrays, which have no hash
+    """Base of tables, of which two are equal if they are of one kind and have the same fields, NaN where NaN is."""
+
+    __slots__ = ()
+
+    # What says that it is a dataclass.
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(_same(getattr(self, each.name), getattr(other, each.name)) for each in fields(self))
+
+
+def _same(mine: Any, other: Any) -> bool:
+    if isinstance(mine, np.ndarray | float):
+        return np.array_equal(mine, other, equal_nan=np.asarray(mine).dtype.kind == "f")
+    return bool(mine == other)
 
 
 def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._exported import Columns, Exported, chosen_columns
+from visviva._exported import ByColumns, Columns, chosen_columns
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._text import count
@@ -26,7 +26,7 @@ __all__ = ["CollisionTable"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable(Exported["CollisionColumnName"], Shown):
+class CollisionTable(ByColumns["CollisionColumnName"], Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Units: those of the scene.
@@ -48,7 +48,7 @@ class CollisionTable(Exported["CollisionColumnName"], Shown):
     member : ndarray of int64, shape (K,)
         The copy of an ensemble; 0 of a single run.
 
-    Indexing with a slice or an array gives a smaller table.
+    Indexing with a slice or an array gives a smaller table. Tables are equal if all their columns are.
 
     References
     ----------

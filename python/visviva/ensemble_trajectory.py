@@ -25,12 +25,13 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva._exported import Columns
     from visviva._html import Sheet
     from visviva.body import BodyMotion
     from visviva.ensemble import EnsembleScene
+    from visviva.ensemble_conservation import EnsembleConservation
     from visviva.scene import Scene
     from visviva.typing import ColumnName
 
@@ -229,6 +230,42 @@ class EnsembleTrajectory(Recorded):
         return with_continuation(
             copies._own(self.ensemble.forces), continuation_after(self.ensemble._keywords, self._result)
         )
+
+    def conservation(self, about: ArrayLike | str | None = None) -> EnsembleConservation:
+        """How well the invariants held in each copy: what `Trajectory.conservation` tells of one, of all.
+
+        Units: those of the scene.
+
+        Parameters
+        ----------
+        about : array_like, shape (3,), or "center_of_mass", optional
+            Reference point of the angular momentum; the origin by default.
+
+        Returns
+        -------
+        EnsembleConservation
+            Drifts of each quantity, each number of shape (B,); it prints as a table of the worst.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a quantity was neither recorded nor can be computed; the message says what to record.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> out = scene.ensemble(velocity=[scene.particles.velocity, 0.9 * scene.particles.velocity]).run(t=1.0)
+        >>> bool((out.conservation().energy.max < 1e-13).all())
+        True
+        """
+        from visviva.ensemble_conservation import conservation_of_copies
+
+        return conservation_of_copies(self, about)
 
     def plot(
         self,

@@ -41,6 +41,8 @@ class Force(Declared):
 
     __slots__ = ()
 
+    _no_sum = "forces are not added; give a scene several, as Scene(particles, a, b), where they add up"
+
     def __init__(self) -> None:
         """Refuse: kinds of it have parameters, and say how to act."""
         raise InvalidInput("Force", "expected one of its kinds, as Gravity(G=1.0) or Harmonic(k=1.0), got Force itself")

@@ -53,6 +53,11 @@ class Potential(Declared):
     __slots__ = ()
 
     name: ClassVar[str]
+    _no_sum = (
+        "potentials are not added; in a scene give each to a force, as PairPotential(a), PairPotential(b), which add "
+        "up; elsewhere write the sum as one formula, Custom(lambda r, k: …, parameters={'k': 1.0}), or sample it in a "
+        "range, Custom(lambda r: a.value(r) + b.value(r), r_min=0.1, r_max=10.0)"
+    )
 
     def __init__(self) -> None:
         """Refuse: kinds of it have a formula."""

@@ -98,7 +98,8 @@ FORMULAS = (
 NO_SOURCE = {
     "coordinate", "forces.Force", "Option", "Point", "Scene.with_state", "WorkPrecision", "Drift",
     "generalized.GeneralizedEnsemble", "generalized.GeneralizedEnsembleTrajectory", "generalized.GeneralizedEventTable",
-    "generalized.GeneralizedPlan", "potentials.Potential", "potentials.potential_by_name",
+    "generalized.GeneralizedPlan", "generalized.GeneralizedStats", "potentials.Potential",
+    "potentials.potential_by_name",
     "rigid.from_scipy", "rigid.load_mesh", "rigid.methods", "rigid.to_scipy",
     "scattering.Bins", "scattering.Bombardment", "scattering.CrossSection", "scattering.DeflectionStatus",
     "scattering.Fraction", "scattering.Ion", "scattering.Spectrum", "scattering.Spread",

@@ -120,3 +120,33 @@ def test_equal_steps_stop_at_zero_of_drag_only_where_it_is_dry() -> None:
         forces={"x": lambda q, v, t: -0.5 * v[0] * abs(v[0]) - 5.0 * v[0]},
     )
     assert quadratic.run([0.0, 30.0], method="rk4", dt=0.01).status is vv.Status.OK
+
+
+def spring(place: float, t0: float, friction: object) -> vv.Lagrangian:
+    forces = {"x": friction}
+    return vv.Lagrangian(lambda q, v, t: (v @ v - q @ q) / 2, ["x"], position=[place], t0=t0, forces=forces)
+
+
+@pytest.mark.parametrize("friction", [
+    lambda q, v, t: -FRICTION * np.sign(v[0]), lambda q, v, t: -FRICTION * v[0] / abs(v[0]),
+    lambda q, v, t: -FRICTION * np.where(v[0] > 0.0, 1.0, -1.0),
+])  # fmt: skip
+def test_what_dry_friction_is_told_to_be_written_as_works(friction: object) -> None:
+    """From rest at 1.05 half swings about ±0.1: −0.85 at π, 0.65 at 2π; by a smooth step, and by events at turns."""
+    with pytest.raises(vv.InvalidInput) as refused:
+        spring(1.05, 0.0, friction).run(1.0)
+    told = refused.value.message
+    assert "np.tanh(" in told
+    assert "a thousandth of the usual values" in told
+    assert "end the run by an event where it switches" in told
+    # Friction of 0.1 is weaker for a time of 1e-4 at each turn, which moves the place by 0.1 (1e-4)² and the like.
+    smooth = spring(1.05, 0.0, lambda q, v, t: -FRICTION * np.tanh(v[0] / 1e-4)).run(np.pi * np.arange(3.0))
+    np.testing.assert_allclose(smooth["x"], [1.05, -0.85, 0.65], rtol=0, atol=1e-8)
+    place, t0 = 1.05, 0.0
+    for sign, end in ((1.0, -0.85), (-1.0, 0.65)):
+        turn = vv.events.expression(lambda q, v, t: v[0], direction=sign, terminal=True)
+        out = spring(place, t0, lambda q, v, t, sign=sign: sign * FRICTION).run(t0 + 4.0, events=[turn])
+        place, t0 = out.final.position[0], out.final.t0
+        # The place of a turn is flat in time: an event is found to round-off, and the run to 1e-12 of a step.
+        assert place == pytest.approx(end, rel=1e-11, abs=0)
+    assert t0 == pytest.approx(2.0 * np.pi, rel=1e-8, abs=0)

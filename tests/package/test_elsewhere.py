@@ -118,6 +118,26 @@ def test_deflections_are_short_in_words_and_a_table_in_a_notebook() -> None:
     assert "captured" in table
 
 
+def test_potentials_and_forces_act_together_as_a_sum_of_them_is_told_to() -> None:
+    """The sampled sum is what both are to 1e-12 of the larger; two forces in a scene add up to a rounding."""
+    a, b = vv.potentials.Yukawa(1.0, 2.0), vv.potentials.PowerLaw(-0.5, 4)
+    for added in (lambda: a + b, lambda: sum([a, b]), lambda: a + 1.0):
+        with pytest.raises(TypeError, match=r"^potentials are not added; in a scene give each to a force") as refused:
+            added()
+    told = str(refused.value).rpartition("range, ")[2]
+    r = np.linspace(0.1, 10.0, 50)
+    both = eval(told, {"Custom": vv.potentials.Custom, "a": a, "b": b})
+    # What is met is 1e-12 of |V| + r |V'|; of r^-4 that is five times V.
+    np.testing.assert_allclose(both.value(r), a.value(r) + b.value(r), rtol=0, atol=5e-12 * np.abs(b.value(0.1)))
+    np.testing.assert_allclose(both.force(2.0), a.force(2.0) + b.force(2.0), rtol=1e-9, atol=0)
+    forces = vv.PairPotential(a), vv.PairPotential(b)
+    with pytest.raises(TypeError, match=r"^forces are not added; give a scene several, as Scene\(particles, a, b\)"):
+        sum(forces)
+    particles = vv.Particles([1.0, 1.0], [[0.0, 0, 0], [2.0, 0, 0]])
+    energies = [vv.Scene(particles, *some).invariants().potential_energy for some in (forces, forces[:1], forces[1:])]
+    assert energies[0] == pytest.approx(energies[1] + energies[2], rel=1e-15, abs=0)
+
+
 def test_bodies_are_joined_as_a_sum_of_them_is_told_to() -> None:
     a, b = SCENE.particles, SUN
     for added in (lambda: a + b, lambda: sum([a, b])):

@@ -67,15 +67,18 @@ CALLS: dict[tuple[str, str], list[tuple[str, Callable[[Path], Any]]]] = {
         ("to_pandas", lambda _: RUN.to_pandas()),
         ("to_pandas", lambda _: COUNTED["cm_angle"].to_pandas()),
         ("to_pandas", lambda _: JOINT.to_pandas()),
+        ("to_pandas", lambda _: FOIL["transmitted_angle"].to_pandas()),
     ],
     ("xarray", "xarray"): [
         ("to_xarray", lambda _: RUN.to_xarray()),
         ("to_xarray", lambda _: COUNTED["cm_angle"].to_xarray()),
         ("to_xarray", lambda _: JOINT.to_xarray()),
+        ("to_xarray", lambda _: FOIL["transmitted_angle"].to_xarray()),
     ],
     ("hist", "hist"): [
         ("to_hist", lambda _: COUNTED["cm_angle"].to_hist()),
         ("to_hist", lambda _: JOINT.to_hist()),
+        ("to_hist", lambda _: FOIL["transmitted_angle"].to_hist()),
     ],
     ("trimesh", "mesh"): [("load_mesh", lambda folder: vv.rigid.load_mesh(folder / "box.stl"))],
     ("scipy", "scipy"): [("to_scipy", lambda _: vv.rigid.to_scipy([0.0, 0.0, 0.0, 1.0]))],

@@ -117,7 +117,7 @@ def systems() -> list[Any]:
     return [
         vv.systems.pendulum().equations,
         *vv.systems.pendulum().equilibria(), free.action(([0.0, 2.0], [0.0, 1.0])), free.legendre_transform(),
-        free.discrete_action((np.arange(50.0), np.arange(50.0))), free.noether(lambda q, v, t: [1.0]),
+        free.discrete_action((np.arange(50.0), np.arange(50.0))), free.noether(lambda q, v, t: [1.0]), swing.stats,
         plane.is_canonical(lambda q, p, t: [2 * q[0], p[0]]), swing.system.accessory_problem(swing),
     ]  # fmt: skip
 
@@ -132,7 +132,9 @@ def answers() -> list[Any]:
     decay = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), np.ones(20), dense_output=True)
     run = problem.scene.run(t=1.0, method="leapfrog", dt=0.01)
     along = np.zeros((2, 2, 3))
+    kept = problem.scene.ensemble(position=problem.scene.particles.position[None]).run(t=1.0).conservation()
     return [
+        kept, *kept.rows,
         advice, *advice.options, plan.cost(), run.stats, run.conservation().energy, points[0],
         vv.WorkPrecision("kepler", tuple(points)), report, *report.verdicts, decay, decay.sol, problem.references[-1],
         vv.audit.third_law([[0, 0, 0], [1.0, 0, 0]], along), *vv.methods(), vv.events.apsis(1, 0), vv.units.SI,

@@ -89,6 +89,17 @@ def test_forms_are_those_of_scipy():
     assert np.allclose(vv.rigid.rotate(Rotation.from_quat(q[0]), v), turned[0], rtol=0, atol=16 * EPSILON)
 
 
+def test_read_only_results_go_to_scipy():
+    """What is given may be read-only; what SciPy is asked to turn may not be, which is what the documentation says."""
+    bodies = vv.RigidBodies([1.0], [[1.0, 2.0, 2.5]], position=[[1.0, 0, 0]], angular_velocity=[[0.1, 1.0, 0.0]])
+    out = vv.Scene(bodies).run(t=[0.0, 5.0, 10.0])
+    assert not out.orientation.flags.writeable
+    theirs = vv.rigid.to_scipy(out.orientation[:, 0])
+    assert np.allclose(theirs.as_quat(), out.orientation[:, 0], rtol=0, atol=EPSILON)
+    ours = vv.rigid.rotate(out.orientation[:, 0], out.position[:, 0])
+    assert np.allclose(theirs.apply(out.position[:, 0].copy()), ours, rtol=0, atol=8 * EPSILON)
+
+
 def test_leading_axes():
     q, v = quaternions(), RANDOM.normal(size=(5, 2, 3))
     assert vv.rigid.rotate(q, v).shape == (5, 2, 3)

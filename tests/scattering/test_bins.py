@@ -131,6 +131,27 @@ def test_counts_are_what_is_expected(potential: vv.potentials.Potential, energy:
         assert 1e-5 < stats.chi2.sf(chi2, many.sum()) < 1.0 - 1e-5
 
 
+@pytest.mark.parametrize("energy", [1.5, LINES], ids=["one energy", "spectrum"])
+def test_two_quantities_together_expect_what_they_count(energy: object) -> None:
+    """Each bin by itself, and summed over one axis what is expected of the other quantity alone."""
+    pair = ("lab_angle", "recoil_energy")
+    result = vv.scattering.monte_carlo(
+        p.LennardJones(1.0, 1.0), **{**BEAM, "beam_energy": energy}, n_events=1_000_000, tally=[pair, *pair], bins=12
+    )
+    joint = result[pair]
+    expected = joint.expected()
+    assert expected.shape == (12, 12)
+    for axis, name in enumerate(pair):
+        # Every event is within the range of the other quantity; up to 14 parts are added up, each rounded to 1e-16.
+        assert expected.sum(1 - axis) == pytest.approx(result[name].expected(), rel=1e-12, abs=1e-6)
+    many = expected > 10.0
+    assert many.sum() > 15
+    chi2 = ((joint.values() - expected)[many] ** 2 / expected[many]).sum()
+    assert 1e-5 < stats.chi2.sf(chi2, many.sum()) < 1.0 - 1e-5
+    # What the potential cannot lead to is counted nowhere.
+    assert not joint.counts[expected == 0.0].any()
+
+
 def test_expected_is_the_integral_of_the_cross_section() -> None:
     """Where every impact parameter lies on the disc: dσ/dΩ by quadrature of the deflection, not by the table."""
     potential, edges = p.Yukawa(1.0, 1.0), np.linspace(1.0, 3.0, 9)

@@ -121,3 +121,35 @@ def test_progress_reaches_the_end():
     foil.run("alpha", beam_energy=1e6, n_events=3000, seed=1, progress=lambda done, total: seen.append((done, total)))
     assert seen[-1] == (3000, 3000)
     assert all(total == 3000 and done <= total for done, total in seen)
+
+
+@pytest.mark.parametrize("forced", [None, 0.4])
+def test_histograms_go_to_hist_xarray_and_pandas(forced):
+    """The numbers of the tally itself; with what is outside they are all ions, whose weights add up to the fraction."""
+    hist, pandas = pytest.importorskip("hist"), pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    foil = S.Foil("water", 0.2, minimum_angle=3e-3)
+    out = foil.run("proton", n_events=2000, forced_angle=forced, **(ASKED | {"tally": {"transmitted_angle": [0.1, 1]}}))
+    tally = out["transmitted_angle"]
+    assert min(tally.underflow + tally.overflow, tally.counts.sum()) > 0
+    filled, data, frame = tally.to_hist(), tally.to_xarray(), tally.to_pandas()
+    assert isinstance(filled, hist.Hist)
+    assert (filled.axes[0].name, filled.axes[0].edges.tolist()) == ("transmitted_angle", [0.1, 1.0])
+    assert (data["transmitted_angle"].units, data.attrs) == ("rad", frame.attrs)
+    assert frame.attrs == {"underflow": tally.underflow, "overflow": tally.overflow, "n_events": 2000}
+    assert frame.index.equals(pandas.IntervalIndex.from_breaks([0.1, 1.0], closed="left", name="transmitted_angle"))
+    for name in ["counts"] if forced is None else ["counts", "values", "variances"]:
+        told = getattr(tally, name)
+        told = told if name == "counts" else told()
+        assert data[name].values.tolist() == frame[name].tolist() == told.tolist()
+    assert len(frame.columns) == len(data) == (1 if forced is None else 3)
+    assert (filled.values() == tally.values()).all()
+    sums = filled.values(flow=True)
+    # Three numbers are added up.
+    assert sums.sum() == pytest.approx(out.fraction("transmitted").value * 2000, rel=1e-15, abs=0)
+    if forced is None:
+        assert sums.tolist() == [tally.underflow, *tally.counts.tolist(), tally.overflow]
+    else:
+        # Those of a tally are less (Σ w)²/N, as the number of ions is fixed.
+        less = tally.values() ** 2 / 2000
+        assert filled.variances() - less == pytest.approx(tally.variances(), rel=1e-14, abs=0)

@@ -27,6 +27,7 @@ from visviva.generalized._nodes import Expression
 from visviva.generalized._noether import NoetherSymmetry
 from visviva.generalized._plan import GeneralizedPlan
 from visviva.generalized._section import PoincareSection
+from visviva.generalized._stats import GeneralizedStats
 from visviva.generalized._symbolic import coordinate, time
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._trajectory import GeneralizedTrajectory
@@ -42,6 +43,7 @@ __all__ = [
     "GeneralizedEnsembleTrajectory",
     "GeneralizedEventTable",
     "GeneralizedPlan",
+    "GeneralizedStats",
     "GeneralizedSystem",
     "GeneralizedTrajectory",
     "Hamiltonian",

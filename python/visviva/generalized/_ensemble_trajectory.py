@@ -20,6 +20,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._columns import StateColumns, exported
 from visviva.generalized._rows import rows_of_copies
 from visviva.generalized._saved import Saved
+from visviva.generalized._stats import GeneralizedStats
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
@@ -148,6 +149,42 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
         status = (("copy",), self.status.astype(np.int8))
         return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
+
+    @property
+    def stats(self) -> GeneralizedStats:
+        """What the run cost, all copies together.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+        >>> out.stats.steps - int(out.steps.sum())
+        0
+        """
+        result = self._result
+        longest = max(result["longest_step"])
+        return GeneralizedStats(sum(result["steps"]), sum(result["evaluations"]), longest, self._asked["method"])
+
+    def conservation(self) -> dict[str, NDArray[np.float64]]:
+        """The largest change of what is conserved in each copy: what `GeneralizedTrajectory.conservation` tells of one.
+
+        Units: changes are relative, without dimension.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (B,)
+            NaN of a copy that ended before its first row.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> changes = vv.systems.pendulum().ensemble(position=[[0.1], [3.0]]).run(t=10.0).conservation()
+        >>> list(changes), changes["energy"].shape, bool(changes["energy"].max() < 1e-13)
+        (['energy'], (2,), True)
+        """
+        each = [self[copy].conservation() for copy in range(len(self))]
+        conserved = self.ensemble.system.conserved
+        return {name: np.array([changes.get(name, np.nan) for changes in each]) for name in conserved}
 
     @property
     def events(self) -> GeneralizedEventTable:

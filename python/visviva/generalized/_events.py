@@ -165,7 +165,8 @@ class GeneralizedEventTable(Lines["GeneralizedEventColumnName"]):
     coordinates : tuple of str
         What the numbers of positions are of.
 
-    Indexing with a slice or an array gives a smaller table; `of` that of one event.
+    Indexing with a slice or an array gives a smaller table; `of` that of one event. Tables are equal if all their
+    columns are, NaN where NaN is, and what was looked for.
 
     Examples
     --------

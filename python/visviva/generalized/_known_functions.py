@@ -22,8 +22,9 @@ LEAPS = {
     "floor_divide": "x // y leaps; write x / y, or end the run by an event where parts differ, and go on from there",
     "remainder": "x % y leaps; where it is to wrap an angle, leave it: sines and cosines do so themselves",
     "divmod": "divmod leaps; end the run by an event where parts differ, and go on from there",
-    "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width), " + WIDTH,
-    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2, " + WIDTH,
+    "sign": f"write x / abs(x), which has no value at 0, or np.tanh(x / width), {WIDTH}, or {SWITCH}",
+    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2, "
+    f"{WIDTH}, or {SWITCH}",
 } | {name: _WHOLE.format(name) for name in ("floor", "ceil", "trunc", "rint", "round")}
 #: What is bent where its arguments meet.
 BENT = {"maximum": _LARGER, "fmax": _LARGER, "minimum": _SMALLER, "fmin": _SMALLER}

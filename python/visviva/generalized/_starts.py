@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from visviva.errors import InvalidInput
+from visviva.generalized._known_functions import SWITCH, WIDTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +47,8 @@ def refuse_a_start(system: Lagrangian | Hamiltonian, state: NDArray[np.float64],
         raise InvalidInput(
             "velocity",
             f"{what} at a velocity of 0: a force along v/|v| (dry friction) has no direction there; start with a "
-            "velocity, or write np.tanh(v/width) for v/|v|",
+            f"velocity, or write np.tanh(v/width) for v/|v|, {WIDTH}, or give the force of one direction and "
+            f"{SWITCH}",
         )
     if _overflows(system, state) and _overflows(system, beside):
         raise InvalidInput(

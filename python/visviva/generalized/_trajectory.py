@@ -16,6 +16,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._columns import exported
 from visviva.generalized._pictures import Drawn
 from visviva.generalized._saved import Saved
+from visviva.generalized._stats import GeneralizedStats
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
@@ -185,6 +186,18 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         found = exported(self, columns, self._row_axes, self.system.coordinates)
         return replace(found, attributes={"method": self.method, "status": self.status.name})
+
+    @property
+    def stats(self) -> GeneralizedStats:
+        """What the run cost.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum(position=[0.5]).run(t=1.0).stats.method
+        'gauss16'
+        """
+        return GeneralizedStats(self.steps, self.evaluations, self.longest_step, self.method)
 
     @property
     def events(self) -> GeneralizedEventTable:

@@ -30,6 +30,7 @@ class Elements(OfOrbits, Shown):
     """The elements of orbits about a fixed center, per unit mass; what :func:`elements` returns.
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
+    Elements are equal if all of these are, NaN where NaN is.
 
     A circle, e = 0 to 27 digits, has its pericenter where the body is: its anomalies are 0. An orbit in the xy plane
     has its node at x: the argument of its pericenter is counted from there. A parabola has an infinite semi-major axis

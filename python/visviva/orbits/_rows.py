@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._exported import Columns, Exported, chosen_columns
+from visviva._exported import ByColumns, Columns, chosen_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ ANGLES = (
 )
 
 
-class OfOrbits(Exported["ElementName"]):
+class OfOrbits(ByColumns["ElementName"]):
     """Base of what has one value, or one vector, for each of several orbits."""
 
     __slots__ = ("_axes",)

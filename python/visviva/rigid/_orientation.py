@@ -316,7 +316,8 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
     Returns
     -------
     scipy.spatial.transform.Rotation
-        The same rotations.
+        The same rotations. Its ``apply`` refuses vectors that are read-only, as those of results are: give it a copy,
+        or use `rotate`.
 
     Raises
     ------

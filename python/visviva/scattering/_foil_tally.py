@@ -16,6 +16,7 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_foil
+from visviva.scattering._exported import ExportedTally
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def summed(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) 
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class FoilTally(ExportedTally, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Attributes
@@ -213,6 +214,22 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         'energy of transmitted ions [eV]'
         """
         return plot_foil(self, ax)
+
+    def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
+        return ((self.name, self.edges),)
+
+    def _whole(self) -> NDArray[np.uint64]:
+        return self.sums[:, 0]
+
+    def _whole_weighted(self, power: int) -> NDArray[np.float64]:
+        return np.asarray(self.sums[:, power] * self.units[power - 1])
+
+    @property
+    def _is_weighted(self) -> bool:
+        return self.units != (1.0, 1.0)
+
+    def _about(self) -> dict[str, int]:
+        return {name: getattr(self, name) for name in ("underflow", "overflow", "n_events")}
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, FoilTally):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,8 @@ from visviva._made_by import made_by
 from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
-from visviva.scattering._exported import ExportedTally, intervals
-from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_columns, weighted_counts
+from visviva.scattering._exported import OfStrata, intervals
+from visviva.scattering._weights import added_strata, read_only, same, variances
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +29,7 @@ __all__ = ["JointTally"]
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
+class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -102,7 +101,7 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         >>> float(run["lab_angle", "energy"].values().sum())
         1000.0
         """
-        return self._weighted(1)
+        return self._whole_weighted(1)[self._inner]
 
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, as those of `Tally.variances`.
@@ -121,10 +120,7 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
         >>> run["lab_angle", "energy"].variances().shape
         (10, 10)
         """
-        return variances(self.values(), self._weighted(2), self.n_events)
-
-    def _weighted(self, power: int) -> NDArray[np.float64]:
-        return weighted_counts(self, power, self.flow)[1:-1, 1:-1]
+        return variances(self.values(), self._whole_weighted(2)[self._inner], self.n_events)
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
@@ -158,9 +154,6 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
 
     def _whole(self) -> NDArray[np.uint64]:
         return self.flow
-
-    def _columns(self) -> dict[str, NDArray[Any]]:
-        return {"counts": self.counts, **weighted_columns(self)}
 
     def _about(self) -> dict[str, int]:
         return {"captured": self.captured, "n_events": self.n_events}

@@ -11,18 +11,14 @@ from visviva import _core
 from visviva._html import Record, brief_tuple
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
-from visviva._packages import needed
 from visviva.errors import InvalidInput
-from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
-from visviva.scattering._exported import ExportedTally, intervals
-from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_columns, weighted_counts
+from visviva.scattering._exported import OfStrata
+from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_counts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
-    from pandas import DataFrame
 
     from visviva.scattering._beam import Beam
     from visviva.typing import TallyName
@@ -60,7 +56,7 @@ class CrossSection(NamedTuple):
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class Tally(OfStrata, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -203,35 +199,6 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
             raise InvalidInput("importance", "expected events of one weight, got strata; variances() has their errors")
         return poisson_interval(self.counts)
 
-    def expected(self) -> NDArray[np.float64]:
-        """What ``values()`` are on the average, by the deflection function: of each bin the area of its places.
-
-        Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
-        certified table), all branches and energies together.
-
-        Returns
-        -------
-        ndarray, shape (B,)
-            Numbers without dimension.
-
-        Raises
-        ------
-        InvalidInput
-            With an energy spread, of an angle that a divergence smears, and of what channels differ in if their
-            probabilities depend on the impact parameter: no area of impact parameters tells those.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> tally = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
-        ...     tally={"cm_angle": vv.scattering.Bins.solid_angle(4)})["cm_angle"]
-        >>> tally.expected().round(6)
-        array([250., 250., 250., 250.])
-        """
-        parts = _core.monte_carlo_expected(beam=described(self.beam), tallies=[[(self.name, self.edges)]])
-        return parts[0][1:-2] * self.n_events
-
     def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
         """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
 
@@ -317,37 +284,6 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
         scale[known] = np.pi * self.b_max**2 / (self.n_events * (width * self.reachable)[known])
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
-    def to_pandas(self) -> DataFrame:
-        """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
-
-        With `importance` ``values`` and ``variances``, too.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Its index are the bins as intervals, closed on the left (the last bin has its end, too). What is outside of
-            them and what was captured is in ``frame.attrs``.
-
-        Raises
-        ------
-        MissingPackage
-            Without the package pandas: ``pip install 'visviva[pandas]'``.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> frame = run["cm_angle"].to_pandas()
-        >>> frame.shape, int(frame["counts"].sum())
-        ((180, 2), 1000)
-        """
-        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(
-            self._columns(), index=intervals(self.name, self.edges)
-        )
-        frame.attrs.update(self._about())
-        return frame
-
     def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
         return ((self.name, self.edges),)
 
@@ -355,7 +291,7 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
         return np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
 
     def _columns(self) -> dict[str, NDArray[Any]]:
-        return {"counts": self.counts, "reachable": self.reachable, **weighted_columns(self)}
+        return {"counts": self.counts, "reachable": self.reachable} | super()._columns()
 
     def _about(self) -> dict[str, int]:
         return {name: getattr(self, name) for name in ("underflow", "overflow", "captured", "n_events")}

@@ -1,0 +1,186 @@
+"""How well the invariants held in each copy of an ensemble.
+
+The one idea: what `Trajectory.conservation` tells of one copy, number by number, under a leading axis B; the table
+shows the copy that did worst.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva._html import Record, Sheet, Shown, as_text
+from visviva._keywords import known_keywords
+from visviva._text import count
+from visviva.conservation import Drift, conservation_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.ensemble_trajectory import EnsembleTrajectory
+    from visviva.trajectory import Trajectory
+
+__all__ = ["DriftOfCopies", "EnsembleConservation"]
+
+_ROWS = ("energy", "momentum", "angular_momentum", "center_of_mass")
+_NUMBERS = tuple(each.name for each in fields(Drift) if each.name != "name")
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class DriftOfCopies(Record):
+    """How far one quantity moved from its initial value, in each copy: the numbers of `Drift`, one by one.
+
+    Attributes
+    ----------
+    name : str
+    scale : ndarray, shape (B,)
+        What `max`, `end` and `rms` are divided by, in the user's units.
+    max, end, rms : ndarray, shape (B,)
+        Largest, last and root-mean-square distance from the initial value, over `scale`; NaN of a copy that failed
+        before its first row.
+    slope : ndarray, shape (B,)
+        Least-squares growth of that distance per unit of time, over `scale`.
+    conserved : ndarray of bool, shape (B,)
+        Whether the forces of the copy, and its collisions, conserve it at all.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.figure_eight().scene
+    >>> drift = scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]]).run(t=[1.0, 2.0]).conservation().energy
+    >>> drift.name, drift.conserved.tolist(), bool(drift.max.max() < 1e-10)
+    ('energy', [True, True], True)
+    """
+
+    name: str
+    scale: NDArray[np.float64]
+    max: NDArray[np.float64]
+    end: NDArray[np.float64]
+    rms: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    conserved: NDArray[np.bool_]
+
+    @property
+    def worst(self) -> int | None:
+        """The copy whose largest drift is the largest, of those that conserve it; None if none does.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> out = scene.ensemble(velocity=[scene.particles.velocity, 0.5 * scene.particles.velocity])
+        >>> out.run(t=[0.0, 6.0], method="leapfrog", dt=0.01).conservation().energy.worst
+        1
+        """
+        largest = np.where(self.conserved & np.isfinite(self.max), self.max, -1.0)
+        copy = int(largest.argmax())
+        return copy if largest[copy] >= 0.0 else None
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class EnsembleConservation(Shown):
+    """Drift of each invariant in each copy of an ensemble; prints as a table of the copy with the largest.
+
+    Units: drifts are relative to their scales, without dimension, and so is the virial; scales are in those of the
+    scene.
+
+    Attributes
+    ----------
+    energy, momentum, angular_momentum, center_of_mass : DriftOfCopies
+        As of `Conservation`, each number an array of shape (B,).
+    virial : ndarray, shape (B,)
+        That of `Conservation`, of each copy.
+    about : str
+        The reference point of the angular momentum.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 (König's theorem, angular momentum) and §
+    3.4 (virial).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.figure_eight().scene
+    >>> kept = scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]]).run(t=[1.0, 2.0]).conservation()
+    >>> kept.energy.max.shape, bool(kept.momentum.conserved.all()), kept.about
+    ((2,), True, 'origin')
+    """
+
+    energy: DriftOfCopies
+    momentum: DriftOfCopies
+    angular_momentum: DriftOfCopies
+    center_of_mass: DriftOfCopies
+    virial: NDArray[np.float64]
+    about: str
+
+    @property
+    def rows(self) -> tuple[DriftOfCopies, ...]:
+        """The drifts, in the order of the table.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.figure_eight().scene
+        >>> kept = scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]]).run(t=[1.0, 2.0]).conservation()
+        >>> [row.name for row in kept.rows]
+        ['energy', 'momentum', 'angular momentum', 'center of mass']
+        """
+        return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
+
+    def __repr__(self) -> str:
+        worst = ((row.name, row.max, row.worst) for row in self.rows)
+        told = ", ".join(f"{name} {drifts[copy]:.1e} (copy {copy})" for name, drifts, copy in worst if copy is not None)
+        return f"EnsembleConservation({count(len(self.virial), 'copy', 'copies')}; {told or 'nothing is conserved'})"
+
+    def __str__(self) -> str:
+        return as_text(self._sheet())
+
+    def _sheet(self) -> Sheet:
+        rows: list[tuple[str, ...]] = []
+        for row in self.rows:
+            copy = row.worst
+            if copy is None:
+                rows.append((f"{row.name} (conserved in no copy)", "", "", "", "", ""))
+                continue
+            numbers = (f"{each[copy]:.1e}" for each in (row.max, row.end, row.rms))
+            rows.append((row.name, *numbers, f"{row.scale[copy]:.6g}", str(copy)))
+        header = ("", "max", "end", "rms", "relative to", "copy")
+        return Sheet(f"Conservation in {count(len(self.virial), 'copy', 'copies')}: the largest drifts", rows, header)
+
+
+def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:
+    """The table of an ensemble: that of each copy that has a row, NaN of one that has none."""
+    found = [conservation_of(copy, about) if _has_rows(copy) else None for copy in out]
+    # Where no copy has a row, that of the first is refused.
+    known = next((each for each in found if each is not None), None) or conservation_of(out[0], about)
+    drifts = {name: _together([None if each is None else getattr(each, name) for each in found]) for name in _ROWS}
+    virial = np.array([np.nan if each is None else each.virial for each in found])
+    virial.setflags(write=False)
+    return EnsembleConservation(**drifts, virial=virial, about=known.about)
+
+
+def _has_rows(copy: Trajectory) -> bool:
+    return any(bool(np.isfinite(copy._column(name)).any()) for name in copy.recorded[:1])
+
+
+def _together(found: Sequence[Drift | None]) -> DriftOfCopies:
+    """One quantity of all copies."""
+    name = next(each.name for each in found if each is not None)
+    none = np.nan
+    missing = Drift(name, scale=none, max=none, end=none, rms=none, slope=none, conserved=False)
+    rows = [missing if each is None else each for each in found]
+    arrays = {each: np.array([getattr(row, each) for row in rows]) for each in _NUMBERS}
+    for array in arrays.values():
+        array.setflags(write=False)
+    return DriftOfCopies(name, **arrays)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
