@@ -28,7 +28,7 @@ pub(super) struct Expanded {
     needs: Needs,
     /// What else acts on each body, linear in where it is and how it moves.
     linear: Vec<Box<dyn Series<Lanes>>>,
-    /// The accelerations by that, of each row, for one over the unit of time; none before they were asked for.
+    /// The accelerations by that, of each row, for a unit of time of 1; none before they were asked for.
     besides: Vec<Beside<Lanes>>,
     /// What velocities and accelerations of each row are multiplied with, as the expressions see them.
     of_velocities: Lanes,

@@ -14,8 +14,9 @@ use std::sync::Arc;
 
 /// The largest error of sin²(ψ/2) that a table may have.
 const MOST_ERROR: f64 = 4e-6;
-/// What series are refined to, as a part of the largest angle nearby.
-const AIM: f64 = 1e-6;
+/// What series are refined to, as a part of the largest angle nearby: the first suffices but where they are worse between the
+/// places at which they are tried.
+const AIMS: [f64; 3] = [1e-6, 1e-7, 1e-8];
 /// Below this part of the minimum angle none is meant.
 const SMALLEST: f64 = 1e-4;
 /// Intervals are halved so often at most.
@@ -151,13 +152,15 @@ impl Angles {
         let built = for_chunks(source.threads, octaves.cells(), ticker, |cell, ticker| {
             let (from, to) = octaves.bounds(cell);
             let source = Source { threads: 1, ..*source };
-            let mut made = Cell::build(&source, (from, to), radius(from, to), ticker)?;
-            let error = made.certified(&source, (from, to), cell as u64, ticker)?;
-            if error > MOST_ERROR {
-                made.pieces.clear();
-                return Ok((made, 0.0));
+            let b_max = radius(from, to);
+            for aim in AIMS {
+                let made = Cell::build(&source, (from, to), (b_max, aim), ticker)?;
+                let error = made.certified(&source, (from, to), cell as u64, ticker)?;
+                if error <= MOST_ERROR {
+                    return Ok((made, error));
+                }
             }
-            Ok((made, error))
+            Ok((Cell::without_series(b_max, from), 0.0))
         })?;
         let error = built.iter().fold(0.0_f64, |worst, (_, error)| worst.max(*error));
         let cells = built.into_iter().map(|(cell, _)| cell).collect();
@@ -180,7 +183,17 @@ fn node(k: usize, of: usize) -> f64 {
 }
 
 impl Cell {
-    fn build(source: &Source<'_>, bounds: (f64, f64), b_max: f64, ticker: &mut Ticker<'_>) -> Result<Self> {
+    /// Of which each angle is found on its own.
+    fn without_series(b_max: f64, scale: f64) -> Self {
+        Self { b_max, scale, starts: Vec::new(), pieces: Vec::new() }
+    }
+
+    fn build(
+        source: &Source<'_>,
+        bounds: (f64, f64),
+        (b_max, aim): (f64, f64),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
         let middle = 0.5 * (bounds.0 + bounds.1);
         // Near an orbit they turn without end, which no series would follow: many pieces would be tried for nothing.
         let mut orbits = false;
@@ -193,10 +206,9 @@ impl Cell {
             }
         }
         if orbits {
-            return Ok(Self { b_max, scale: middle, starts: Vec::new(), pieces: Vec::new() });
+            return Ok(Self::without_series(b_max, middle));
         }
-        let scale = matched(source, middle, b_max, ticker)? * middle;
-        let mut cell = Self { b_max, scale, starts: Vec::new(), pieces: Vec::new() };
+        let mut cell = Self::without_series(b_max, matched(source, middle, b_max, ticker)? * middle);
         let mut done: Vec<(f64, f64, Series)> = Vec::new();
         let mut pending: Vec<(f64, f64, u32)> =
             (0..4).map(|i| (f64::from(i) / 4.0, f64::from(i + 1) / 4.0, 2)).collect();
@@ -205,8 +217,8 @@ impl Cell {
             if done.len() + pending.len() > MOST_PIECES {
                 return Ok(cell);
             }
-            let Some((series, right)) = cell.piece(source, bounds, (from, to), ticker)? else {
-                return Ok(Self { starts: Vec::new(), pieces: Vec::new(), ..cell });
+            let Some((series, right)) = cell.piece(source, bounds, (from, to, aim), ticker)? else {
+                return Ok(cell);
             };
             if right || depth >= DEEPEST {
                 done.push((from, to, series));
@@ -227,7 +239,7 @@ impl Cell {
         &self,
         source: &Source<'_>,
         bounds: (f64, f64),
-        (from, to): (f64, f64),
+        (from, to, aim): (f64, f64, f64),
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<(Series, bool)>> {
         let place = |y: f64, x: f64| {
@@ -275,7 +287,7 @@ impl Cell {
         let right = TRIED.iter().enumerate().all(|(tried, [y, x])| {
             let at = IN_B * IN_ENERGY + tried;
             let off = self.angle(sum(&series, *y, *x), places[at].0, places[at].1) - found[at].angle;
-            off.abs() <= AIM * largest + SMALLEST * source.minimum + 4.0 * found[at].error
+            off.abs() <= aim * largest + SMALLEST * source.minimum + 4.0 * found[at].error
         });
         Ok(Some((series, right)))
     }
