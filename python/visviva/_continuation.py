@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from visviva import _core
     from visviva.runnable import Runnable
 
@@ -49,7 +51,9 @@ def turning(begun: Any, copies: int) -> dict[str, Any]:
     return {name: np.zeros((copies, 0, width)) if begun is None else begun[name] for name, width in widths.items()}
 
 
-def continuation_of_copies(continuation: _core._Continuation | None, rows: slice) -> _core._Continuation | None:
+def continuation_of_copies(
+    continuation: _core._Continuation | None, rows: slice | NDArray[np.intp]
+) -> _core._Continuation | None:
     """That of some of the copies."""
     if continuation is None:
         return None

@@ -52,7 +52,8 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene, threads: i
     if asked["rigid"] is None or asked["dt"] is None or not result["stats"]["steps"]:
         return
     bodies = asked["mass"].shape[1]
-    together = asked["own_forces"] is None and bool((asked["mass"] == asked["mass"][0]).all())
+    of_all = (asked["mass"], asked["rigid"]["moments"], asked["rigid"]["axes"])
+    together = asked["own_forces"] is None and all(bool((each == each[0]).all()) for each in of_all)
     few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
     each_apart = not together and len(asked["mass"]) > _FEW_ALONE
     fewest = _ALONE if each_apart else 0 if few else _MANY_EVALUATIONS
@@ -139,7 +140,7 @@ def _conserves(asked: _core._Request, copy: int, scene: Scene) -> bool:
 def _changes(
     result: dict[str, Any], asked: _core._Request, copies: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """How far energies of copies with the same forces and masses went, kinetic + |potential|, and that at the start."""
+    """How far energies of copies with the same forces and bodies went, kinetic + |potential|, and that at the start."""
     first = (asked["position"], asked["velocity"], *_turning(asked))
     states = [np.concatenate([a[copies], b[copies]]) for a, b in zip(first, _last(result), strict=True)]
     told = _energies(asked, copies[0], states)

@@ -89,7 +89,7 @@ _COLLISIONS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "collisions/member": ("i8", ("C",)),
     "final/mass": ("f8", ("B", "N")),
 }
-# Of rigid bodies (R of them); moments or tensors, and points that are held, are those of all copies.
+# Of rigid bodies (R of them); points that are held are those of all copies, moments or tensors unless they are `own_…`.
 _RIGID: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "rigid/orientation": ("f8", ("B", "R", 4)),
     "rigid/angular_velocity": ("f8", ("B", "R", 3)),
@@ -100,6 +100,8 @@ _RIGID_OWN: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "rigid/moments": ("f8", ("R", 3)),
     "rigid/inertia": ("f8", ("R", 3, 3)),
     "rigid/pivot": ("f8", ("R", 3)),
+    "rigid/own_moments": ("f8", ("B", "R", 3)),
+    "rigid/own_inertia": ("f8", ("B", "R", 3, 3)),
 }
 # Of a run that left something behind for another, and of one that went on with what another left: K blocks, S places.
 _HELD: dict[str, tuple[str, tuple[str | int, ...]]] = {

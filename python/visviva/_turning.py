@@ -1,4 +1,4 @@
-"""Rigid bodies of ensemble members: orientations and angular velocities with an axis over the copies."""
+"""Rigid bodies among the parts of a scene: as points with mass, as the core is told of them, and in files."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import float_array
-from visviva._rigid_arguments import refuse_on_rods, unit_quaternions
+from visviva._rigid_arguments import refuse_on_rods
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
-from visviva.rigid._arguments import checked_rows
 from visviva.rigid._orientation import rotate, rotate_back
-from visviva.rigid_bodies import IS_ROUNDED, RigidBodies
+from visviva.rigid_bodies import RigidBodies
 from visviva.rigid_forces import AppliedTorque, RotationalDrag
 from visviva.rigid_springs import AttachedSpring
 
@@ -27,15 +25,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "centers_of_turned",
-    "checked_turning",
-    "core_rigid_of_copies",
     "described",
+    "held_centers",
     "joined_bodies",
     "kept_by_bodies",
+    "no_bodies",
     "rigid_for_file",
     "rigid_from_file",
     "spin_scale",
-    "turning_of_copies",
     "with_centers",
 ]
 
@@ -99,17 +96,17 @@ def centers_of_turned(
     What is in `given`, positions or velocities, is as it is.
     """
     if rigid is None:
-        raise _no_bodies(next(iter(turning)))
+        raise no_bodies(next(iter(turning)))
     turned = rigid._changed(**turning)
     own: dict[str, NDArray[np.float64]] = {}
     if "position" not in given:
-        own["position"] = _held(rigid, turned.orientation, points.position[-len(rigid) :])
+        own["position"] = held_centers(rigid, turned.orientation, points.position[-len(rigid) :])
     if "velocity" not in given:
         own["velocity"] = turned.velocity
     return points._changed(**{n: np.concatenate([getattr(points, n)[: -len(rigid)], a]) for n, a in own.items()})
 
 
-def _held(rigid: RigidBodies, turns: NDArray[np.float64], centers: NDArray[np.float64]) -> NDArray[np.float64]:
+def held_centers(rigid: RigidBodies, turns: NDArray[np.float64], centers: NDArray[np.float64]) -> NDArray[np.float64]:
     """Centers (…, K, 3) of bodies turned so (…, K, 4), those with a fixed point where that stays in space."""
     if rigid.pivot is None:
         return centers
@@ -120,73 +117,8 @@ def _held(rigid: RigidBodies, turns: NDArray[np.float64], centers: NDArray[np.fl
     return np.where(moved[..., None], rigid.fixed_point - arms, centers)
 
 
-def _no_bodies(name: str) -> InvalidInput:
+def no_bodies(name: str) -> InvalidInput:
     return InvalidInput(name, "expected None: the scene has no rigid bodies")
-
-
-def checked_turning(
-    scene: Scene, orientation: ArrayLike | None, angular_velocity: ArrayLike | None
-) -> dict[str, NDArray[np.float64]]:
-    """What is given of rigid bodies, checked: quaternions (B, K, 4) and angular velocities (B, K, 3)."""
-    rigid, given = scene.rigid_bodies, {}
-    for name, value in (("orientation", orientation), ("angular_velocity", angular_velocity)):
-        if value is None:
-            continue
-        if rigid is None:
-            raise _no_bodies(name)
-        width = 4 if name == "orientation" else 3
-        given[name] = float_array(name, value, ("B", len(rigid), width))
-    if rigid is not None and "orientation" in given:
-        turns = checked_rows("orientation", given["orientation"], (4,))
-        given["orientation"] = unit_quaternions(turns.reshape(-1, 4), ()).reshape(turns.shape)
-    return given
-
-
-def core_rigid_of_copies(
-    scene: Scene,
-    count: int,
-    turning: dict[str, NDArray[np.float64]],
-    full: dict[str, NDArray[np.float64]],
-    *,
-    given: frozenset[str],
-) -> _core._Rigid | None:
-    """What the core is told of the rigid bodies of all copies. Held points stay, unless bodies are moved."""
-    described = scene._keywords["rigid"]
-    rigid = scene.rigid_bodies
-    if described is None or rigid is None:
-        return None
-    masses = full["mass"][:, -len(rigid) :]
-    if (masses != rigid.mass).any():
-        raise InvalidInput("mass", "expected the masses of rigid bodies as they are: their moments belong to them")
-    core_rigid: _core._Rigid = described.copy()
-    arrays: Any = core_rigid
-    for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
-        each = turning.get(name, arrays[name])
-        arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
-    if rigid.pivoted.any() and "orientation" in turning and "position" not in given:
-        placed = full["position"].copy()
-        placed[:, -len(rigid) :] = _held(rigid, core_rigid["orientation"], placed[:, -len(rigid) :])
-        placed.setflags(write=False)
-        full["position"] = placed
-    if rigid.pivot is not None and (turning or "velocity" in given):
-        arms = np.where(rigid.pivoted[:, None], -rigid.pivot, 0.0)
-        follows = rotate(core_rigid["orientation"], np.cross(core_rigid["angular_velocity"], arms))
-        size = 1e-9 * np.abs(follows).max(axis=-1)
-        apart = np.abs(full["velocity"][:, -len(rigid) :] - follows).max(axis=-1)
-        if (
-            "velocity" in given
-            and (rigid.pivoted & (apart > size) & full["velocity"][:, -len(rigid) :].any(axis=-1)).any()
-        ):
-            raise InvalidInput("velocity", "expected 0 for bodies with fixed points, or what follows from their spins")
-        moving = full["velocity"].copy()
-        centers = moving[:, -len(rigid) :]
-        # What a run gives stays as it is, which is that but for roundings.
-        largest = np.abs(core_rigid["angular_velocity"]).max(axis=-1) * np.abs(arms).max(axis=-1)
-        other = rigid.pivoted & ~(apart <= IS_ROUNDED * largest)
-        centers[...] = np.where(other[..., None], follows, centers)
-        moving.setflags(write=False)
-        full["velocity"] = moving
-    return core_rigid
 
 
 def kept_by_bodies(scene: Scene, kept: dict[str, bool]) -> dict[str, bool]:
@@ -242,6 +174,12 @@ def rigid_from_file(
         return [points], []
     turning = {name: arrays[f"rigid/{name}"][0] for name in ("orientation", "angular_velocity")}
     own: dict[str, Any] = {name: arrays.get(f"rigid/{name}") for name in ("moments", "inertia", "pivot")}
+    # Where copies have their own, masses and states are those of the first, and so is what belongs to them.
+    of_copies = {
+        name: arrays[f"rigid/own_{name}"][0] for name in ("moments", "inertia") if f"rigid/own_{name}" in arrays
+    }
+    if of_copies:
+        own |= {"moments": None, "inertia": None} | of_copies
     count = len(turning["orientation"])
     centers = {name: getattr(points, name)[-count:] for name in ("mass", "position", "velocity")}
     names = header["rigid"]["names"] or points.names[len(points) - count :] or None
@@ -253,11 +191,3 @@ def rigid_from_file(
         forces.append(kinds[values.pop("kind")](**values))
     free = len(points) - count
     return [*([points[:free]] if free else []), bodies], forces
-
-
-def turning_of_copies(keywords: _core._Scene, chosen: int | slice) -> dict[str, Any]:
-    """Orientations and angular velocities of some copies; nothing without rigid bodies."""
-    rigid = keywords["rigid"]
-    if rigid is None:
-        return {}
-    return {"orientation": rigid["orientation"][chosen], "angular_velocity": rigid["angular_velocity"][chosen]}

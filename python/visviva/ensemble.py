@@ -12,8 +12,14 @@ from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
 from visviva._made_by import made_by
 from visviva._own_forces import described, forces_of_copies
+from visviva._rigid_copies import (
+    checked_inertia,
+    checked_turning,
+    core_rigid_of_copies,
+    inertia_of_one,
+    turning_of_copies,
+)
 from visviva._text import count
-from visviva._turning import checked_turning, core_rigid_of_copies, turning_of_copies
 from visviva.ensemble_trajectory import EnsembleTrajectory, one_or_some, rows_of
 from visviva.errors import InvalidInput
 from visviva.request import StreamRequest, asked_by
@@ -60,7 +66,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     (2, (2, 2, 3), False)
     """
 
-    __slots__ = ("_keywords", "forces", "mass", "position", "radius", "scene", "velocity")
+    __slots__ = ("_inertia", "_keywords", "forces", "mass", "position", "radius", "scene", "velocity")
 
     _is_ensemble = True
 
@@ -70,6 +76,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     velocity: NDArray[np.float64]
     radius: NDArray[np.float64]
     forces: tuple[tuple[Force, ...], ...]
+    _inertia: dict[str, NDArray[np.float64]]
 
     def __init__(
         self,
@@ -82,6 +89,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
+        moments: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
     ) -> None:
         from visviva.scene import Scene
 
@@ -98,15 +107,16 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             each = float_array("radius", radius, ("B", *own["radius"].shape))
             given["radius"] = read_only(radius_array(each, each.shape), radius)
         turning = checked_turning(scene, orientation, angular_velocity)
+        own_inertia = checked_inertia(scene, moments, inertia)
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
-        if not given and own_forces is None and not turning:
+        lengths = {name: array.shape[0] for name, array in (given | turning | own_inertia).items()}
+        if own_forces is not None:
+            lengths["parameters"] = len(own_forces)
+        if not lengths:
             raise InvalidInput(
                 "position",
                 "expected position, velocity, mass, radius or parameters with a leading axis over the copies, got none",
             )
-        lengths = {name: array.shape[0] for name, array in (given | turning).items()}
-        if own_forces is not None:
-            lengths["parameters"] = len(own_forces)
         first, count = next(iter(lengths.items()))
         for name, length in lengths.items():
             if length != count:
@@ -117,7 +127,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
-        rigid = core_rigid_of_copies(scene, count, turning, full, given=frozenset(given))
+        rigid = core_rigid_of_copies(scene, count, turning, own_inertia, full, given=frozenset(given))
         prepared: _core._Scene = {
             "mass": full["mass"],
             "position": full["position"],
@@ -130,7 +140,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             "t0": scene.t0,
             "continuation": None,
         }
-        for name, value in {"scene": scene, **full, "_keywords": prepared, "forces": (scene.forces,) * count}.items():
+        state = {"scene": scene, **full, "forces": (scene.forces,) * count}
+        for name, value in {**state, "_keywords": prepared, "_inertia": own_inertia}.items():
             object.__setattr__(self, name, value)
         if own_forces is not None:
             self._own(own_forces)
@@ -154,17 +165,19 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         chosen = one_or_some(index, len(self))
         state = {name: getattr(self, name)[chosen] for name in ("mass", "position", "velocity", "radius")}
         own = turning_of_copies(self._keywords, chosen)
+        inertia: dict[str, Any] = {name: each[chosen] for name, each in self._inertia.items()}
         continuation = continuation_of_copies(self._keywords["continuation"], rows_of(chosen))
         if isinstance(chosen, slice):
             if self._keywords["radius"] is None:
                 del state["radius"]
-            some = EnsembleScene(self.scene, **state, **own)
+            some = EnsembleScene(self.scene, **state, **own, **inertia)
             return with_continuation(some._own(self.forces[chosen]), continuation)
         bodies = self.scene.particles._in_state(**{name: read_only(array) for name, array in state.items()})
         told = self._keywords["forces"]
         if self._keywords["own_forces"] is not None:
             sets, which = self._keywords["own_forces"]
             told = sets[which[chosen]]
+        own |= inertia_of_one(inertia)
         copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, told=told, **own)
         if self._keywords["radius"] is not None:
             copy._keywords["radius"] = bodies.radius[None]
@@ -192,7 +205,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
-        own = turning_of_copies(self._keywords, slice(None))
+        own = turning_of_copies(self._keywords, slice(None)) | self._inertia
         radius = self._keywords["radius"]
         return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, radius, own)
 

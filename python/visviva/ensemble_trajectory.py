@@ -221,11 +221,12 @@ class EnsembleTrajectory(Recorded):
                 "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
             )
         last = self._result["final"]
-        own = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
+        own: dict[str, Any] = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
         first = {name: array[0] for name, array in own.items()}
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **first)
         mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
         state = {"position": last["position"], "velocity": last["velocity"]}
+        own |= self.ensemble._inertia
         copies = type(self.ensemble)(shared, **state, mass=mass, radius=radius, **own)
         return with_continuation(
             copies._own(self.ensemble.forces), continuation_after(self.ensemble._keywords, self._result)

@@ -108,6 +108,8 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     arrays |= of_rigid
     if start["rigid"] is not None:
         arrays |= {f"rigid/{name}": start["rigid"][name] for name in ("orientation", "angular_velocity")}
+    if isinstance(run._start, EnsembleScene):
+        arrays |= {f"rigid/own_{name}": each for name, each in run._start._inertia.items()}
     if start["radius"] is not None:
         arrays["radius"] = start["radius"]
     if start["continuation"] is not None:
@@ -205,6 +207,8 @@ def _run_from_file(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory
             radius=radius,
             orientation=arrays.get("rigid/orientation"),
             angular_velocity=arrays.get("rigid/angular_velocity"),
+            moments=arrays.get("rigid/own_moments"),
+            inertia=arrays.get("rigid/own_inertia"),
         )
         if header.get("own_forces") is not None:
             sets, of_copy = header["own_forces"]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from functools import cache, wraps
+from functools import cache, partial, wraps
 from inspect import Parameter, Signature, signature
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
@@ -317,14 +317,17 @@ def execute(
         raise InvalidInput("executor", "one scene is one piece of work; scene.ensemble(...) has parts to send")
     asked = request.to_core(prepared, names)
     threads = None if request.threads is None else whole_number("threads", request.threads)
+    run: Callable[..., dict[str, Any]] = partial(_core.run, ensemble=ensemble)
+    if ensemble and asked["rigid"] is not None:
+        from visviva._alike_copies import run_copies as run
     if request.progress is False:
-        result = _core.run(asked, threads=threads, progress=None, ensemble=ensemble)
+        result = run(asked, threads=threads, progress=None)
     else:
         from visviva._progress import callback
 
         shown = _counted(asked, ensemble) if request.progress is True else ()
         with callback(request.progress, *shown) as report:
-            result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
+            result = run(asked, threads=threads, progress=report)
     return finished(result, asked, threads, ensemble=ensemble, make=make)
 
 

@@ -219,6 +219,8 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
+        moments: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
     ) -> EnsembleScene:
         """Many copies of the scene that differ in their states, or in the parameters of their forces.
 
@@ -229,7 +231,7 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         position, velocity : array_like, shape (B, N, 3), optional
             One state per copy; what is not given is the scene's own in every copy.
         mass : array_like, shape (B, N), optional
-            Masses per copy.
+            Masses per copy; of rigid bodies with their `moments` or `inertia`, which belong to them.
         radius : array_like, shape (B, N), optional
             Radii per copy.
         parameters : dict of dict, optional
@@ -243,6 +245,12 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
             Quaternions of the rigid bodies per copy; points that are held stay where they are.
         angular_velocity : array_like, shape (B, K, 3), optional
             Their angular velocities per copy.
+        moments : array_like, shape (B, K, 3), optional
+            Their principal moments of inertia about the center of mass per copy, as `RigidBodies` takes them; points
+            that are held stay where they are in the bodies. Copies whose bodies have other symmetries (spheres, two
+            equal moments, none, rods) may take other methods, and run apart; the plan is that of the least symmetric.
+        inertia : array_like, shape (B, K, 3, 3), optional
+            Their inertia tensors per copy, in place of `moments`.
 
         Returns
         -------
@@ -252,7 +260,7 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         ------
         visviva.InvalidInput
             If nothing is given or the numbers of copies disagree; a force or a parameter that is not there, or a value
-            that the force refuses.
+            that the force refuses; moments that are those of no body.
 
         Examples
         --------
@@ -267,6 +275,10 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         >>> out = probe.ensemble(parameters={drag: {"tau": [1.0, 2.0, 4.0]}}).run(t=1.0)
         >>> out.velocity[:, -1, 0, 1].round(3).tolist()
         [0.052, 0.219, 0.355]
+        >>> wheel = vv.Scene(vv.RigidBody(1.0, [1.0, 1.0, 2.0]), vv.AppliedTorque([0.0, 0.0, 1.0]))
+        >>> out = wheel.ensemble(moments=[[[1.0, 1.0, 2.0]], [[1.0, 1.0, 0.5]]]).run(t=1.0)
+        >>> out.angular_velocity[:, -1, 0, 2].round(9).tolist()
+        [0.5, 2.0]
         """
         from visviva.ensemble import EnsembleScene
 
@@ -279,6 +291,8 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
             parameters=parameters,
             orientation=orientation,
             angular_velocity=angular_velocity,
+            moments=moments,
+            inertia=inertia,
         )
 
     def advise(self, t: ArrayLike, *, accuracy: float, of: Literal["energy", "position"] = "energy") -> Advice:

@@ -1,0 +1,219 @@
+"""Ensembles whose rigid bodies have masses and moments of inertia of their own: each copy as it is alone."""
+
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+COLUMNS = ("position", "velocity", "orientation", "angular_velocity", "energy", "angular_momentum")
+COPIES = 11
+TIMES = [0.1, 0.515]
+HOW: list[dict[str, Any]] = [
+    {},
+    {"method": "rk4", "dt": 0.01},
+    {"method": "kahan_li8", "dt": 0.01},
+    {"method": "moser_veselov10", "dt": 0.01},
+    {"method": "verner98"},
+]
+
+PAIR = vv.RigidBodies(
+    [1.0, 2.0],
+    [[1.0, 2.0, 2.5], [1.0, 1.0, 1.5]],
+    position=[[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]],
+    angular_velocity=[[0.1, 2.0, 0.0], [0.3, 0.5, 0.0]],
+)
+POINTS = vv.Particles([0.5, 0.1], [[0.0, 3.0, 0.0], [1.0, -3.0, 0.0]], [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0]])
+TOP = vv.RigidBody(1.0, [0.25, 0.25, 0.5], pivot=[0.1, 0.0, -1.0], angular_velocity=[0.2, 0.1, 0.0], name="top")
+WEIGHT = vv.UniformField([0.0, 0.0, -1.0])
+SCENES = {
+    "free": vv.Scene(PAIR),
+    "beside points": vv.Scene(POINTS, PAIR),
+    "under gravity": vv.Scene(POINTS, PAIR, vv.Gravity(0.3)),
+    "heavy top": vv.Scene(TOP, WEIGHT),
+    "on a spring": vv.Scene(POINTS, PAIR, vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=2.0, anchor=[0.0, 0.0, 1.0])),
+}
+
+
+def moments(rng: np.random.Generator, number: int, *, symmetries: bool) -> np.ndarray:
+    """Of bodies of three different moments, or of spheres, symmetric ones, rods and others by turns."""
+    second = rng.uniform(0.02, 0.3, (COPIES, number, 3))
+    kind = rng.integers(4, size=(COPIES, number)) if symmetries else np.full((COPIES, number), 2)
+    second[kind == 0] = second[kind == 0][:, :1]
+    second[kind == 1, 1] = second[kind == 1, 0]
+    found = second.sum(axis=-1, keepdims=True) - second
+    found[kind == 3] = [1.0, 1.0, 0.0]
+    return found
+
+
+def copies_of(name: str, *, symmetries: bool, tensors: bool = False) -> vv.EnsembleScene:
+    rng = np.random.default_rng([len(name), symmetries, tensors])
+    scene = SCENES[name]
+    bodies = scene.rigid_bodies
+    assert bodies is not None
+    number = len(bodies)
+    masses = np.tile(scene.particles.mass, (COPIES, 1))
+    masses[:, -number:] *= rng.uniform(0.5, 2.0, (COPIES, number))
+    own = moments(rng, number, symmetries=symmetries)
+    if not tensors:
+        return scene.ensemble(mass=masses, moments=own)
+    turns = rng.normal(size=(COPIES, number, 4))
+    axes = vv.rigid.matrix(turns / np.linalg.norm(turns, axis=-1, keepdims=True))
+    tensors_of_copies = np.einsum("cbij,cbj,cbkj->cbik", axes, own, axes)
+    return scene.ensemble(mass=masses, inertia=0.5 * (tensors_of_copies + np.swapaxes(tensors_of_copies, -1, -2)))
+
+
+def assert_same(found: Any, expected: Any, columns: tuple[str, ...] = COLUMNS) -> None:
+    for column in columns:
+        assert np.array_equal(getattr(found, column), getattr(expected, column)), column
+
+
+@pytest.mark.parametrize("how", HOW, ids=lambda how: how.get("method", "auto"))
+@pytest.mark.parametrize("symmetries", [False, True], ids=["asymmetric", "all symmetries"])
+@pytest.mark.parametrize("name", SCENES)
+def test_members_are_as_if_alone(name: str, symmetries: bool, how: dict[str, Any]) -> None:
+    copies = copies_of(name, symmetries=symmetries)
+    for threads in (1, 3):
+        out = copies.run(t=TIMES, record=COLUMNS, threads=threads, **how)
+        for member in range(COPIES):
+            assert_same(out[member], copies[member].run(t=TIMES, record=COLUMNS, **how))
+
+
+@pytest.mark.parametrize("name", ["beside points", "heavy top"])
+def test_tensors_of_copies(name: str) -> None:
+    copies = copies_of(name, symmetries=False, tensors=True)
+    out = copies.run(t=TIMES, record=COLUMNS)
+    for member in range(COPIES):
+        assert_same(out[member], copies[member].run(t=TIMES, record=COLUMNS))
+
+
+def test_a_copy_is_the_scene_that_its_numbers_make() -> None:
+    """Put together by hand, the moments about the point that is held among it."""
+    own = [[0.25, 0.25, 0.5], [0.25, 0.3, 0.5], [0.25, 0.25, 0.25]]
+    masses = [1.0, 2.0, 0.5]
+    copies = SCENES["heavy top"].ensemble(mass=np.reshape(masses, (3, 1)), moments=np.reshape(own, (3, 1, 3)))
+    out = copies.run(t=2.0)
+    for member, (mass, of_one) in enumerate(zip(masses, own, strict=True)):
+        body = vv.RigidBody(mass, of_one, pivot=[0.1, 0.0, -1.0], angular_velocity=[0.2, 0.1, 0.0], name="top")
+        alone = vv.Scene(body, WEIGHT)
+        assert copies[member] == alone
+        assert_same(out[member], alone.run(t=2.0), COLUMNS[:4])
+
+
+def test_a_torque_spins_up_what_has_less_inertia_faster() -> None:
+    """ω = τ t / I about a principal axis, and exp(−c t / I) of a spin that drag takes."""
+    inertia = np.geomspace(0.1, 10.0, 17)
+    own = np.multiply.outer(inertia, [[1.0, 1.2, 1.0]])
+    wheel = vv.RigidBody(1.0, [1.0, 1.2, 1.0])
+    out = vv.Scene(wheel, vv.AppliedTorque([0.0, 0.0, 0.5])).ensemble(moments=own).run(t=2.0, rtol=1e-12)
+    # Of the tolerance.
+    assert out.angular_velocity[:, -1, 0, 2] == pytest.approx(1.0 / inertia, rel=1e-11, abs=0.0)
+    spinning = vv.Scene(vv.RigidBody(1.0, [1.0, 1.2, 1.0], angular_velocity=[0, 0, 3.0]), vv.RotationalDrag(0.1))
+    out = spinning.ensemble(moments=own).run(t=2.0, rtol=1e-12)
+    assert out.angular_velocity[:, -1, 0, 2] == pytest.approx(3.0 * np.exp(-0.2 / inertia), rel=1e-11, abs=0.0)
+
+
+def test_a_free_body_wobbles_at_the_rate_of_its_moments() -> None:
+    """Ω = (I₃ − I₁) ω₃ / I₁ about the axis of a symmetric body (Goldstein, § 5.6)."""
+    axial = np.linspace(0.5, 1.9, 15)
+    own = np.stack([np.ones(15), np.ones(15), axial], axis=-1)[:, None]
+    body = vv.RigidBody(1.0, [1.0, 1.0, 1.5], angular_velocity=[0.1, 0.0, 2.0])
+    out = vv.Scene(body).ensemble(moments=own).run(t=5.0)
+    turned = 10.0 * (axial - 1.0)
+    spin = out.angular_velocity[:, -1, 0]
+    # Roundings of an angle of up to nine radians.
+    assert spin[:, 0] == pytest.approx(0.1 * np.cos(turned), rel=0.0, abs=1e-15)
+    assert spin[:, 1] == pytest.approx(0.1 * np.sin(turned), rel=0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("symmetries", [False, True], ids=["asymmetric", "all symmetries"])
+@pytest.mark.parametrize("how", [HOW[0], HOW[2]], ids=["auto", "kahan_li8"])
+def test_elsewhere(tmp_path: Path, how: dict[str, Any], symmetries: bool) -> None:
+    """Saved, pickled, cut, sent to executors and run on: the same copies."""
+    copies = copies_of("heavy top", symmetries=symmetries)
+    out = copies.run(t=TIMES, **how)
+    on = out.final.run(t=1.0, **how)
+    out.save(tmp_path / "run.npz")
+    loaded = vv.load(tmp_path / "run.npz")
+    assert isinstance(loaded, vv.EnsembleTrajectory)
+    for other in (loaded, pickle.loads(pickle.dumps(out))):
+        assert list(other.ensemble) == list(copies)
+        assert_same(other.ensemble.run(t=TIMES, **how), out)
+        assert_same(other.final.run(t=1.0, **how), on)
+    assert_same(copies[3:9].run(t=TIMES, **how), out[3:9])
+    assert list(copies[3:9]) == [copies[member] for member in range(3, 9)]
+    for member in (0, 4, 10):
+        assert_same(on[member], copies[member].run(t=TIMES, **how).final.run(t=1.0, **how))
+    with ThreadPoolExecutor(2) as executor:
+        assert_same(copies.run(t=TIMES, executor=executor, **how), out)
+    table = out.to_pandas()
+    assert len(table) == 2 * COPIES
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    copies.run_to_parquet(t=TIMES, to=tmp_path / "run.parquet", copies_at_once=4, **how)
+    streamed = pandas.read_parquet(tmp_path / "run.parquet")
+    for column in table.columns:
+        if column in streamed:
+            assert np.array_equal(streamed[column], table[column]), column
+
+
+def test_events_of_copies_that_run_apart() -> None:
+    """Each has the table that it has alone, in the order of the copies."""
+    copies = copies_of("heavy top", symmetries=True)
+    falls = vv.events.plane([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], body="top")
+    out = copies.run(t=6.0, events=[falls])
+    assert (np.diff(out.events.member) >= 0).all()
+    assert len(out.events) > COPIES // 2
+    for member in range(COPIES):
+        alone = copies[member].run(t=6.0, events=[falls])
+        assert np.array_equal(out[member].events.t, alone.events.t)
+        assert np.array_equal(out[member].events.position, alone.events.position)
+
+
+def test_progress_of_copies_that_run_apart() -> None:
+    shares: list[float] = []
+    copies_of("heavy top", symmetries=True).run(t=1.0, progress=lambda done, total: shares.append(done / total))
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+
+def test_stopped_by_the_keyboard() -> None:
+    def stop(done: float, total: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(vv.Interrupted, match="of 11 copies"):
+        copies_of("heavy top", symmetries=True).run(t=1.0, progress=stop)
+
+
+ONE = np.ones((2, 1, 3))
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"moments": np.ones((2, 1, 2))}, r"moments: expected shape \(B, 1, 3\), got \(2, 1, 2\)"),
+        ({"inertia": ONE}, r"inertia: expected shape \(B, 1, 3, 3\), got \(2, 1, 3\)"),
+        ({"moments": [[[1, 2, 2.0]], [[1, 2, 9.0]]]}, r"moments: expected moments of which none .*\(top of copy 1\)"),
+        ({"moments": ONE, "inertia": np.ones((2, 1, 3, 3))}, "moments: expected moments or inertia .* got both"),
+        ({"mass": [[2.0], [1.0]]}, "mass: expected the masses of rigid bodies as they are, or moments="),
+        ({"mass": [[1.0], [0.0]], "moments": ONE}, "mass: expected positive masses .* that of top of copy 1 is 0.0"),
+        ({"mass": np.ones((3, 1)), "moments": ONE}, "moments: expected 3 copies like mass, got 2"),
+    ],
+)
+def test_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(vv.InvalidInput, match=message):
+        SCENES["heavy top"].ensemble(**given)
+
+
+def test_refused_without_bodies_and_on_rods() -> None:
+    with pytest.raises(vv.InvalidInput, match="moments: expected None: the scene has no rigid bodies"):
+        vv.problems.kepler(e=0.5).scene.ensemble(moments=ONE)
+    with pytest.raises(vv.InvalidInput, match=r"no spin about the axis of a rod, .* that of body 0 of copy 1 is 2\.0"):
+        vv.Scene(vv.RigidBody(1.0, [1, 1, 1], angular_velocity=[0, 1, 2])).ensemble(moments=[[[1, 1, 1]], [[1, 1, 0]]])
+    driven = vv.Scene(vv.RigidBody(1.0, [1, 1, 1]), vv.AppliedTorque([0, 0, 1], body=0, frame="body"))
+    with pytest.raises(vv.InvalidInput, match="torque: expected a torque across the axis of body 0 of copy 1, a rod"):
+        driven.ensemble(moments=[[[1, 1, 1.0]], [[1, 1, 0.0]]])
