@@ -30,6 +30,10 @@ def of_copies(asked: _core._Request, copies: slice | NDArray[np.intp]) -> _core.
         request["rigid"] = own | {name: own[name][copies] for name in _OF_RIGID_BODIES}
     if asked["own_forces"] is not None:
         sets, which = asked["own_forces"]
-        request["own_forces"] = (sets, np.asarray(which)[copies].tolist())
+        # A set that none of them has is none of theirs, and what is planned of all is planned of the first.
+        chosen = np.asarray(which)[copies]
+        used, of_copy = np.unique(chosen, return_inverse=True)
+        request["own_forces"] = ([sets[each] for each in used], of_copy.tolist()) if len(used) > 1 else None
+        request["forces"] = sets[chosen[0]]
     request["continuation"] = None
     return cast("_core._Request", request)

@@ -174,6 +174,17 @@ def test_events_of_copies_that_run_apart() -> None:
         assert np.array_equal(out[member].events.position, alone.events.position)
 
 
+@pytest.mark.parametrize("how", HOW[:2], ids=["auto", "rk4"])
+def test_forces_of_their_own_beside(how: dict[str, Any]) -> None:
+    """Gravity in some copies and none in others, whatever their bodies are."""
+    own = moments(np.random.default_rng(3), 2, symmetries=True)
+    parameters = {"Gravity": {"G": np.where(np.arange(COPIES) % 4 == 0, 0.0, 0.3)}}
+    copies = SCENES["under gravity"].ensemble(moments=own, parameters=parameters)
+    out = copies.run(t=TIMES, **how)
+    for member in range(COPIES):
+        assert_same(out[member], copies[member].run(t=TIMES, **how), COLUMNS[:4])
+
+
 def test_progress_of_copies_that_run_apart() -> None:
     shares: list[float] = []
     copies_of("heavy top", symmetries=True).run(t=1.0, progress=lambda done, total: shares.append(done / total))
