@@ -56,7 +56,7 @@ class Event(Record):
     terminal: int
 
     def _to_core(self) -> dict[str, Any]:
-        parameters = dict(self.parameters)
+        parameters: dict[str, Any] = dict(self.parameters)
         if self.kind in _GENERALIZED:
             raise InvalidInput(
                 "events",

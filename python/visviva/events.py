@@ -359,8 +359,8 @@ def function(
     Parameters
     ----------
     call : callable
-        ``call(t, position, velocity)``, or with orientations and angular velocities after them, which gives a number; an
-        event is where that passes zero.
+        ``call(t, position, velocity)``, or with orientations and angular velocities after them, which gives a number;
+        an event is where that passes zero.
     direction, terminal : optional
         As of `plane` and `distance`.
 

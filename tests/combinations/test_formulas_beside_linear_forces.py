@@ -1,4 +1,4 @@
-"""Taylor series of formulas beside forces that are linear in places and velocities: one walk through all orders for each body."""
+"""Taylor series of formulas beside forces that are linear in places and velocities: one walk through all orders."""
 
 from __future__ import annotations
 

@@ -89,7 +89,8 @@ class States(Shown):
         set_(self, "t0", number("t0", t0))
         set_(self, "_model", _core.GeneralizedModel(source.description) if model is None else model)
         set_(self, "_structure", self._model.structure())
-        set_(self, "_start_is_sound", False)
+        nobody_has_looked = False
+        set_(self, "_start_is_sound", nobody_has_looked)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenAttribute(name, f"a {type(self).__name__} is frozen; at({name}=…) makes another one")
@@ -118,7 +119,8 @@ class States(Shown):
         """Refuse a start from which the equations have no meaning."""
         if not self._start_is_sound:
             self._look_at_start()
-            object.__setattr__(self, "_start_is_sound", True)
+            is_sound = True
+            object.__setattr__(self, "_start_is_sound", is_sound)
 
     def _look_at_start(self) -> None:
         """Refuse a start from which the equations have no meaning, looking."""
