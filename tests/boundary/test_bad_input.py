@@ -241,7 +241,7 @@ def test_a_path_whose_text_is_none_is_refused() -> None:
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("conservation", r"out\[i\]\.conservation"), ("animate", r"out\[i\]\.animate"), ("y", "position and velocity")],
+    [("animate", r"out\[i\]\.animate"), ("y", "position and velocity")],
 )
 def test_what_an_ensemble_lacks_its_copies_have(name: str, message: str) -> None:
     copies: vv.EnsembleScene = NAMES["copies"]  # type: ignore[assignment]

@@ -112,3 +112,19 @@ def test_without_rigid_bodies_it_is_refused_before_anything_runs():
         vv.systems.pendulum(position=[1.0]).run(t=1.0, events=[vv.events.function(across)])
     with pytest.raises(vv.InvalidInput, match="called with"):
         vv.events.function(lambda t, position, velocity, orientation: 0.0)
+
+
+def test_no_turn_is_missed_in_a_step_that_is_long_beside_it():
+    # The body stays where it is, so that one step may be the whole run.
+    out = vv.Scene(TOP).run(t=1000.0, events=[across])
+    times = (np.arange(len(out.events)) + 0.5) * np.pi / RATE
+    assert len(out.events) == int(1000.0 * RATE / np.pi + 0.5)
+    # 1e-16 of the angle of 6000 rad, times what a spin of 0.3 makes of a phase.
+    np.testing.assert_allclose(out.events.t, times, rtol=0.0, atol=1e-11)
+
+
+def test_turns_that_nobody_could_follow_in_a_step_are_refused():
+    with pytest.raises(vv.InvalidInput, match=r"events: .*one step in which a rigid body turns by .* max_step="):
+        vv.Scene(TOP).run(t=1e7, events=[across])
+    out = vv.Scene(TOP).run(t=1e7, events=[vv.events.function(across, terminal=True)], max_step=1e4)
+    assert abs(out.final.t0 - 0.25 * np.pi) < 1e-10

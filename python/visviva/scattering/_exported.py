@@ -172,6 +172,7 @@ class ExportedTally:
         return frame
 
 
+@known_keywords
 class OfStrata(OfEvents, ExportedTally):
     """Base of tallies of a beam, of which `importance` weights the strata."""
 

@@ -131,7 +131,7 @@ impl Search<'_, '_> {
         let [start, end] =
             [&self.watch.sights[self.event], &self.watch.next[self.event]].map(|sight| self.rate(sight));
         let (mut points, mut rates) = (vec![(0.0, self.ends[0])], vec![start]);
-        for theta in self.samples() {
+        for theta in self.samples()? {
             let sight = self.sight_on_the_way(theta, step, ticker)?;
             points.push((theta, sight.value));
             rates.push(self.rate(&sight));
@@ -220,19 +220,26 @@ impl Search<'_, '_> {
     }
 
     /// Where the step is sampled.
-    fn samples(&self) -> Vec<f64> {
-        let job = self.watch.job;
+    ///
+    /// # Errors
+    /// A step in which bodies turn too often to be followed.
+    fn samples(&self) -> Result<Vec<f64>> {
+        let (job, length) = (self.watch.job, self.length().abs());
         let run = job.times.last().map_or(0.0, |end| (end - job.scene.t0).abs());
-        let parts = (FEWEST * self.length().abs() / run).ceil().min(FEWEST);
+        let mut parts = (FEWEST * length / run).ceil().min(FEWEST);
         let mut samples = SAMPLES.to_vec();
-        let is_known = !matches!(self.watch.event(self.event).0.what, What::Function(_));
+        let event = self.watch.event(self.event).0;
+        let is_known = !matches!(event.what, What::Function(_));
+        if let (true, Some(turns)) = (event.sees_turning(), &self.watch.turns) {
+            parts = parts.max(turns.parts(length)?);
+        }
         if is_known || parts <= SAMPLES.len() as f64 {
-            return samples;
+            return Ok(samples);
         }
         samples.extend((1..parts as u32).map(|part| f64::from(part) / parts));
         samples.sort_by(f64::total_cmp);
         samples.dedup();
-        samples
+        Ok(samples)
     }
 
     /// Where the function is zero, and its slope there, if it goes almost straight from one sign to the other: told from the
