@@ -356,3 +356,13 @@ def test_rational_numbers_are_rounded_once() -> None:
 def test_a_rational_number_beyond_floats_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match="expected finite real numbers"):
         vv.ExpressionForce(force=[sp.Rational(10**400, 3), 0, 0])
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "dop853", "rk4"])
+@pytest.mark.parametrize(("mass", "length"), [(1e300, 1e100), (1e200, 1e120), (1e-200, 1e-130)])
+def test_units_in_which_a_force_is_no_number_are_refused(method, mass, length):
+    spring = vv.ExpressionForce(force=lambda r, v, t, k: (-k * r[0], -k * r[1], 0.0), parameters={"k": mass})
+    scene = vv.Scene(vv.Particles([mass], [[length, 0.0, 0.0]], [[0.0, 0.5 * length, 0.0]]), [spring])
+    step = {"dt": 0.1} if method == "rk4" else {}
+    with pytest.raises(vv.InvalidInput, match="units in which what an ExpressionForce gives is a number"):
+        scene.run(2.0, method=method, **step)

@@ -188,6 +188,13 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn validate(&self, _: &Bodies<'_>) -> Result<()> {
         Ok(())
     }
+    /// Refuses units of a motion in which what it is made of is beyond all numbers.
+    ///
+    /// # Errors
+    /// By name.
+    fn check_units(&self, _: Units) -> Result<()> {
+        Ok(())
+    }
     /// Whether it acts on a body by a force, so that the body must have mass to be moved.
     fn needs_mass(&self, _particle: usize) -> bool {
         false

@@ -306,6 +306,7 @@ impl Plan {
             copies: scene.copies,
             particles: scene.particles,
         };
+        plan.forces.iter().try_for_each(|force| force.check_units(plan.units))?;
         plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
         if !plan.turning.steps() {

@@ -24,6 +24,7 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::units::{Dimension, Units};
+use crate::words::number;
 use expanded::Expanded;
 use kernel::Kernel;
 use std::sync::Arc;
@@ -222,6 +223,20 @@ impl ForceTerm for ExpressionForce {
     }
     fn has_series(&self) -> bool {
         self.expressions.series.is_some()
+    }
+
+    fn check_units(&self, units: Units) -> Result<()> {
+        let unit = units.take(self.place.unit(self.gives), self.gives.dimension());
+        if unit.is_normal() {
+            return Ok(());
+        }
+        let what = if self.gives == Gives::Acceleration { "an acceleration" } else { "a force" };
+        let message = format!(
+            "expected units in which what an ExpressionForce gives is a number, but {what} of 1 is {} of those that \
+             move these bodies; choose units nearer to theirs",
+            number(unit)
+        );
+        Err(Error::invalid("forces", message))
     }
 
     fn potential_and_virial(
