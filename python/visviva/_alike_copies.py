@@ -67,3 +67,7 @@ def _kinds(asked: _core._Request) -> list[NDArray[np.intp]]:
     agree = (a == b).astype(int) + (b == c) + (c == a) + 4 * (rigid["moments"] == 0.0).any(axis=-1)
     _, kind = np.unique(agree, axis=0, return_inverse=True)
     return [np.flatnonzero(kind == each) for each in range(kind.max() + 1)]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

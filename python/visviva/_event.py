@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import number, whole_number
+from visviva._event_functions import sees_turning
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -68,8 +69,6 @@ class Event(Record):
                 "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
             )
         if self.kind == "function":
-            from visviva.events import sees_turning
-
             parameters["sees_turning"] = sees_turning(parameters["function"])
         return {
             "kind": self.kind,

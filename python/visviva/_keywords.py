@@ -299,12 +299,10 @@ def check_call(
         pass
 
 
-def takes(function: Callable[..., Any], places: tuple[str, ...]) -> bool:
+def takes(function: Callable[..., Any], places: Iterable[str]) -> bool:
     """Whether a function can be called with so many; one that does not tell what it takes may be."""
     try:
-        signature(function).bind(*places)
-    except TypeError:
+        check_call("function", function, places)
+    except InvalidInput:
         return False
-    except ValueError:
-        return True
     return True

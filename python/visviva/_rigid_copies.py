@@ -59,12 +59,13 @@ def checked_inertia(
     given = {name: value for name, value in (("moments", moments), ("inertia", inertia)) if value is not None}
     if len(given) > 1:
         raise InvalidInput("moments", "expected moments or inertia of the rigid bodies, got both")
-    for name, value in given.items():
-        if scene.rigid_bodies is None:
-            raise no_bodies(name)
-        axes = (3,) if name == "moments" else (3, 3)
-        return {name: read_only(float_array(name, value, ("B", len(scene.rigid_bodies), *axes)), value)}
-    return {}
+    if not given:
+        return {}
+    ((name, value),) = given.items()
+    if scene.rigid_bodies is None:
+        raise no_bodies(name)
+    axes = (3,) if name == "moments" else (3, 3)
+    return {name: read_only(float_array(name, value, ("B", len(scene.rigid_bodies), *axes)), value)}
 
 
 def inertia_of_one(own: dict[str, Any]) -> dict[str, Any]:

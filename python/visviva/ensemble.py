@@ -115,7 +115,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         if not lengths:
             raise InvalidInput(
                 "position",
-                "expected position, velocity, mass, radius or parameters with a leading axis over the copies, got none",
+                "expected position, velocity, mass, radius or parameters with a leading axis over the copies, or of "
+                "rigid bodies orientation, angular_velocity, moments or inertia, got none",
             )
         first, count = next(iter(lengths.items()))
         for name, length in lengths.items():

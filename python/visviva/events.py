@@ -23,8 +23,9 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event import Event, make_event
+from visviva._event_functions import check_event_function
 from visviva._event_table import EventTable
-from visviva._keywords import check_call, known_keywords, takes, unknown_name
+from visviva._keywords import known_keywords, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -394,19 +395,8 @@ def function(
     """
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
-    if not sees_turning(call):
-        check_call("call", call, _OF_POINTS)
+    check_event_function(call)
     return make_event("function", direction, terminal, function=call)
-
-
-#: What a function is called with, and beside rigid bodies.
-_OF_POINTS = ("t", "position", "velocity")
-_OF_RIGID_BODIES = (*_OF_POINTS, "orientation", "angular_velocity")
-
-
-def sees_turning(call: Callable[..., float]) -> bool:
-    """Whether a function takes orientations and angular velocities, too."""
-    return not takes(call, _OF_POINTS) and takes(call, _OF_RIGID_BODIES)
 
 
 def __dir__() -> list[str]:

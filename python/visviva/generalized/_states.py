@@ -34,11 +34,11 @@ class States(Shown):
     """Base of `GeneralizedSystem`: what it is made of, and the same system elsewhere."""
 
     __slots__ = (
+        "_looks_at_start",
         "_model",
         "_projects",
         "_second",
         "_source",
-        "_start_is_sound",
         "_structure",
         "_values",
         "coordinates",
@@ -59,8 +59,8 @@ class States(Shown):
     _projects: bool
     #: What the core has found of the equations.
     _structure: dict[str, Any]
-    #: Whether the start was looked at: it never changes.
-    _start_is_sound: bool
+    #: How often the start was looked at: once will do, since it never changes.
+    _looks_at_start: int
 
     #: What the second half of a state is called.
     _second_name = "velocity"
@@ -89,8 +89,7 @@ class States(Shown):
         set_(self, "t0", number("t0", t0))
         set_(self, "_model", _core.GeneralizedModel(source.description) if model is None else model)
         set_(self, "_structure", self._model.structure())
-        nobody_has_looked = False
-        set_(self, "_start_is_sound", nobody_has_looked)
+        set_(self, "_looks_at_start", 0)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenAttribute(name, f"a {type(self).__name__} is frozen; at({name}=…) makes another one")
@@ -117,13 +116,12 @@ class States(Shown):
 
     def _check_start(self) -> None:
         """Refuse a start from which the equations have no meaning."""
-        if not self._start_is_sound:
+        if not self._looks_at_start:
             self._look_at_start()
-            is_sound = True
-            object.__setattr__(self, "_start_is_sound", is_sound)
+            object.__setattr__(self, "_looks_at_start", 1)
 
     def _look_at_start(self) -> None:
-        """Refuse a start from which the equations have no meaning, looking."""
+        """Refuse a start from which the equations have no meaning; `_check_start` asks once."""
 
     def at(
         self,

@@ -36,3 +36,7 @@ class GeneralizedStats(Record):
     evaluations: int
     longest_step: float
     method: str
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
