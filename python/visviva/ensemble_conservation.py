@@ -15,6 +15,7 @@ from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.conservation import Drift, conservation_of
+from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
 
 _ROWS = ("energy", "momentum", "angular_momentum", "center_of_mass")
+#: Copies that ended so did what was asked.
+_WHOLE = (Status.OK, Status.STOPPED)
 _NUMBERS = tuple(each.name for each in fields(Drift) if each.name != "name")
 
 
@@ -98,6 +101,8 @@ class EnsembleConservation(Shown):
         That of `Conservation`, of each copy.
     about : str
         The reference point of the angular momentum.
+    status : ndarray of int8, shape (B,)
+        How each copy ended, values of `Status`. The drifts of one that failed are those up to there.
 
     References
     ----------
@@ -119,6 +124,7 @@ class EnsembleConservation(Shown):
     center_of_mass: DriftOfCopies
     virial: NDArray[np.float64]
     about: str
+    status: NDArray[np.int8]
 
     @property
     def rows(self) -> tuple[DriftOfCopies, ...]:
@@ -152,7 +158,10 @@ class EnsembleConservation(Shown):
             numbers = (f"{each[copy]:.1e}" for each in (row.max, row.end, row.rms))
             rows.append((row.name, *numbers, f"{row.scale[copy]:.6g}", str(copy)))
         header = ("", "max", "end", "rms", "relative to", "copy")
-        return Sheet(f"Conservation in {count(len(self.virial), 'copy', 'copies')}: the largest drifts", rows, header)
+        failed = int((~np.isin(self.status, _WHOLE)).sum())
+        upto = f", of which {failed} failed, told up to there" if failed else ""
+        title = f"Conservation in {count(len(self.virial), 'copy', 'copies')}{upto}: the largest drifts"
+        return Sheet(title, rows, header)
 
 
 def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:
@@ -163,7 +172,7 @@ def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | Non
     drifts = {name: _together([None if each is None else getattr(each, name) for each in found]) for name in _ROWS}
     virial = np.array([np.nan if each is None else each.virial for each in found])
     virial.setflags(write=False)
-    return EnsembleConservation(**drifts, virial=virial, about=known.about)
+    return EnsembleConservation(**drifts, virial=virial, about=known.about, status=out.status)
 
 
 def _has_rows(copy: Trajectory) -> bool:

@@ -94,3 +94,12 @@ def test_stats_of_generalized_coordinates(tmp_path: Path) -> None:
     assert out.stats.method == each[0].method == out[0].method == "gauss16"
     out.save(tmp_path / "run.npz")
     assert vv.load(tmp_path / "run.npz").stats == out.stats
+
+
+def test_copies_that_failed_are_told_with_the_drifts_up_to_there():
+    scene = vv.problems.kepler(e=0.5).scene
+    falling = np.stack([scene.particles.velocity, np.zeros_like(scene.particles.velocity)])
+    out = scene.ensemble(velocity=falling).run(t=[0.0, 0.5, 5.0], method="dop853")
+    kept = out.conservation()
+    assert kept.status.tolist() == out.status.tolist() == [vv.Status.OK, vv.Status.CLOSE_ENCOUNTER]
+    assert "2 copies, of which 1 failed, told up to there" in str(kept)
