@@ -7,9 +7,10 @@ from typing import Any
 
 from visviva._arrays import number
 from visviva._event import Event, direction_of, make_event
+from visviva._event_arguments import check_two
 from visviva._names import body_index
 from visviva.errors import InvalidInput
-from visviva.events import _check_two, apsis, distance, energy, function, plane
+from visviva.events import apsis, distance, energy, function, plane
 
 __all__ = ["descriptions", "from_description", "to_core", "with_body_indices"]
 
@@ -53,7 +54,7 @@ def with_body_indices(events: list[dict[str, Any]], names: tuple[str, ...]) -> l
         resolved = {**event, **indices}
         for first, second in (("first", "second"), ("body", "about")):
             if indices and isinstance(resolved.get(second), int):
-                _check_two(second, resolved[first], resolved[second])
+                check_two(second, resolved[first], resolved[second])
         found.append(resolved)
     return found
 

@@ -21,8 +21,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import float_array, number, positive, whole_number
+from visviva._arrays import number, positive
 from visviva._event import Event, make_event
+from visviva._event_arguments import body_of, check_two, point_of
 from visviva._event_functions import check_event_function
 from visviva._event_table import EventTable
 from visviva._keywords import known_keywords, unknown_name
@@ -39,21 +40,6 @@ if TYPE_CHECKING:
     _Rows = NDArray[np.float64]
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
-
-
-def _body(name: str, value: object) -> int | str:
-    # A name waits for the scene to say which body it is.
-    return value if isinstance(value, str) else whole_number(name, value, low=0)
-
-
-def _check_two(name: str, first: int | str, second: int | str) -> None:
-    if first == second:
-        raise InvalidInput(name, f"expected two bodies, got {first} twice")
-
-
-def _point(name: str, value: object) -> tuple[float, float, float]:
-    x, y, z = float_array(name, value, (3,)).tolist()
-    return x, y, z
 
 
 @known_keywords
@@ -95,8 +81,8 @@ def distance(
     3
     """
     length = positive("below", below)
-    i, j = _body("first", first), _body("second", second)
-    _check_two("second", i, j)
+    i, j = body_of("first", first), body_of("second", second)
+    check_two("second", i, j)
     return make_event("distance", direction, terminal, first=i, second=j, distance=length)
 
 
@@ -156,10 +142,10 @@ def plane(
     2.000000000
     2.500000000
     """
-    through, perpendicular = _point("point", point), _point("normal", normal)
+    through, perpendicular = point_of("point", point), point_of("normal", normal)
     if not any(perpendicular):
         raise InvalidInput("normal", "expected a vector other than 0, got 0.0 in every component")
-    return make_event("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
+    return make_event("plane", direction, terminal, point=through, normal=perpendicular, body=body_of("body", body))
 
 
 @known_keywords
@@ -204,12 +190,12 @@ def apsis(
     >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0)]).events)
     6
     """
-    whose = _body("body", body)
+    whose = body_of("body", body)
     if np.ndim(about) == 0:
-        focus: Any = _body("about", about)
-        _check_two("about", whose, focus)
+        focus: Any = body_of("about", about)
+        check_two("about", whose, focus)
     else:
-        focus = _point("about", about)
+        focus = point_of("about", about)
     return make_event("apsis", direction, terminal, body=whose, about=focus)
 
 
