@@ -105,6 +105,10 @@ def test_a_file_keeps_the_name_of_the_function(tmp_path):
     out.save(tmp_path / "top.npz")
     loaded = vv.load(tmp_path / "top.npz")
     assert np.array_equal(loaded.events.t, out.events.t)
+    assert loaded.events.definitions == out.events.definitions
+    assert loaded.events.definitions[0].parameters == (("name", "across"),)
+    # Nothing of how the function was called is kept beside its name.
+    assert out._result["looked_for"][0].keys() == {"kind", "function", "name", "direction", "last"}
 
 
 def test_without_rigid_bodies_it_is_refused_before_anything_runs():

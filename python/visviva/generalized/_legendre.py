@@ -296,7 +296,7 @@ class LegendreTransform(Shown):
         with np.errstate(all="ignore"):
             beyond, within = (np.abs(self._missing(q, p, part * v, t)).max(axis=1) for part in (_BEYOND, _WELL_WITHIN))
             rounding = np.finfo(float).eps * np.abs(p).max(axis=1)
-            found: NDArray[np.bool_] = (beyond <= rounding) & (within > rounding) & (v != 0.0).any(axis=1)
+            found: NDArray[np.bool_] = (beyond <= rounding) & (within > rounding)
         return found
 
     def _check_convex(self, mass: _Array, q: _Array, v: _Array) -> None:
