@@ -287,7 +287,6 @@ def test_a_torque_in_space_spins_up_a_ball() -> None:
     ("change", "argument"),
     [
         ({"method": "auto", "dt": None, "time_transformation": "distance"}, "time_transformation"),
-        ({"method": "taylor", "dt": None}, "method"),
         ({"method": "boris"}, "method"),
         ({"method": "stormer13"}, "method"),
         ({"time_transformation": "distance"}, "time_transformation"),

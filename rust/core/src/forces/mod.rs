@@ -219,6 +219,10 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         self.expand_series(jet, ticker)
     }
 
+    fn coefficient(&mut self, n: usize, jet: &Jet<S>, a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        self.coefficient_of_series(n, jet, a, ticker)
+    }
+
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
         self.series_smooth_until(jet, h)
     }

@@ -98,20 +98,27 @@ impl<S: Element> Dynamics<S> {
 
     pub(super) fn expand_series(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
-        let Some(AllSeries { forces, a }) = &mut self.series else {
-            return Err(Error::Internal("forces without their series".to_owned()));
-        };
+        let AllSeries { forces, a } = self.series.as_mut().ok_or_else(without_series)?;
         if let [only] = &mut forces[..] {
             return only.expand(jet, a, ticker);
         }
-        a.fill(S::zero());
         for n in 0..jet.order {
-            for (index, force) in forces.iter_mut().enumerate() {
-                force.coefficient(n, jet, a, index == 0, ticker)?;
-            }
+            sum(forces, n, jet, a, ticker)?;
             jet.raise(n, a);
         }
         Ok(())
+    }
+
+    pub(super) fn coefficient_of_series(
+        &mut self,
+        n: usize,
+        jet: &Jet<S>,
+        a: &mut [S],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.evaluations += u64::from(n == 0);
+        let AllSeries { forces, .. } = self.series.as_mut().ok_or_else(without_series)?;
+        sum(forces, n, jet, a, ticker)
     }
 
     /// The shortest of the steps that the forces allow, if any limits them.
@@ -119,4 +126,25 @@ impl<S: Element> Dynamics<S> {
         let forces = self.series.iter().flat_map(|series| &series.forces);
         forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
     }
+}
+
+fn without_series() -> Error {
+    Error::Internal("forces without their series".to_owned())
+}
+
+/// The coefficient of order `n` of the accelerations by all forces.
+fn sum<S: Element>(
+    forces: &mut [Box<dyn Series<S>>],
+    n: usize,
+    jet: &Jet<S>,
+    a: &mut [S],
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    if forces.is_empty() {
+        a.fill(S::zero());
+    }
+    for (index, force) in forces.iter_mut().enumerate() {
+        force.coefficient(n, jet, a, index == 0, ticker)?;
+    }
+    Ok(())
 }

@@ -145,7 +145,7 @@ impl<S: Controlled> Norm<S> {
         let halves = if matches!(state.form(), Form::SecondOrder(_)) {
             [state.q(), state.v()]
         } else {
-            [state.all().0, &[]]
+            [state.all().0; 2]
         };
         let center =
             |weights, block: &Block<S>| self.center(weights, block, halves[usize::from(block.velocity)]);

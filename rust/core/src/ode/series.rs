@@ -8,7 +8,7 @@ use super::state::State;
 use super::system::Form;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Pass, Scaled, View};
-use crate::numerics::integrals::raise;
+use crate::numerics::integrals::{over, raise};
 
 /// Taylor coefficients of a state in powers of the time since its expansion, in units of [`unit`](Self::unit).
 #[derive(Clone, Debug)]
@@ -90,6 +90,31 @@ impl<S: Element> Jet<S> {
         let [of_v, of_q] = [&self.inverse[n + 1], &self.inverse[n + 2]];
         let (v, q) = (&mut self.v[(n + 1) * len..][..len], &mut self.q[(n + 2) * len..][..len]);
         S::pass(Raise { a, of_v, of_q, v, q });
+    }
+
+    /// Takes up the coefficient of order `n` of the rates of a system of the first order.
+    pub fn raise_rates(&mut self, n: usize, rates: &[S]) {
+        let (unit, inverse) = (&self.unit, &self.inverse[n + 1]);
+        S::pass(RaiseRates { rates, unit, inverse, into: &mut self.q[(n + 1) * self.len..][..self.len] });
+    }
+}
+
+/// The coefficients of a system of the first order that follow from one of the rates.
+struct RaiseRates<'a, S> {
+    rates: &'a [S],
+    unit: &'a S,
+    inverse: &'a Scaled<S>,
+    into: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for RaiseRates<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let (unit, inverse) = (V::load(*self.unit), V::scaled(self.inverse));
+        for (into, rate) in V::view_mut(self.into).iter_mut().zip(V::view(self.rates)) {
+            *into = over(*rate * unit, inverse);
+        }
     }
 }
 

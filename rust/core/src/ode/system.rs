@@ -158,6 +158,16 @@ pub trait System<S: Element>: Send {
         Err(Error::Internal("the system has no series".to_owned()))
     }
 
+    /// Writes the coefficient of order `n` of the accelerations of a motion (in the jet's unit of time) whose coefficients of
+    /// places and velocities are there up to that order, and were asked for in turn.
+    ///
+    /// # Errors
+    /// As [`expand`](Self::expand).
+    fn coefficient(&mut self, n: usize, jet: &Jet<S>, a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        let _ = (n, jet, a, ticker);
+        Err(Error::Internal("the system has no series".to_owned()))
+    }
+
     /// The longest step up to `h` over which what it was [expanded](Self::expand) in last is as smooth as that tells, if
     /// anything in it may turn sharply.
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {

@@ -96,6 +96,11 @@ impl<S: Controlled> TaylorStep<S> {
         }
     }
 
+    /// Whether the equations are of the first order.
+    fn first_order(&self) -> bool {
+        matches!(self.next.form(), Form::FirstOrder(_))
+    }
+
     /// The order for a tolerance.
     fn order(&self, rtol: f64) -> usize {
         // Products: the platform's logarithm is not the same everywhere.
@@ -116,13 +121,15 @@ impl<S: Controlled> TaylorStep<S> {
             return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
         }
         let Jet { q, v, len, per_unit, .. } = &self.jet;
+        // Of a system of the first order all numbers lie in one half.
+        let (v, per_unit) = if self.first_order() { (q, S::one()) } else { (v, *per_unit) };
         let of = |highest: usize| {
             let inverse = S::pass(InverseStep {
                 blocks: &norm.blocks,
                 inverse_tolerances: &self.inverse_tolerances,
                 coefficients: [q, v],
                 len: *len,
-                per_unit,
+                per_unit: &per_unit,
                 orders: [highest, highest - 1],
             });
             if norm.together { inverse.largest_lane() } else { inverse }
@@ -194,11 +201,17 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
             self.unit = S::select(fresh, unit, self.unit);
             return Ok(());
         }
-        let mut a = vec![S::zero(); self.jet.len];
-        system.acceleration(&clock.elapsed, state.q(), state.v(), &mut a, ticker)?;
+        let mut rates = vec![S::zero(); self.jet.len];
+        let moving = if matches!(state.form(), Form::FirstOrder(_)) {
+            system.rate(&clock.elapsed, state.all().0, &mut rates, ticker)?;
+            &rates[..]
+        } else {
+            system.acceleration(&clock.elapsed, state.q(), state.v(), &mut rates, ticker)?;
+            state.v()
+        };
         let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
         let change = |k| Change { k, stride: self.jet.len, terms: &terms, factor: S::one() };
-        let slope2 = norm.sizes(state, state, &clock.elapsed, &[change(state.v()), change(&a)])[0];
+        let slope2 = norm.sizes(state, state, &clock.elapsed, &[change(moving), change(&rates)])[0];
         let time = S::one() / (norm.rtol * slope2.sqrt());
         let time = S::select(time.less(span), time, span).max(span * S::splat(BRIEFEST));
         self.unit = S::select(fresh, time.power_below(), self.unit);
@@ -235,6 +248,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let Chosen { sound, again } = told;
         let taken = sound.and(again.not());
         Self::state_at(&self.jet, state, self.h, &mut self.next);
+        system.settle(&mut self.next);
         let looked_at = taken.and(running);
         let astray = if looked_at.any() {
             looked_at.and(self.leads_astray(norm, system, ticker)?)
@@ -282,13 +296,14 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
     fn at(
         &mut self,
         outcome: &Settled<S>,
-        _: &mut dyn System<S>,
+        system: &mut dyn System<S>,
         state: &State<S>,
         theta: S,
         into: &mut State<S>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
         Self::state_at(&self.jet, state, theta * outcome.h, into);
+        system.settle(into);
         Ok(())
     }
 
@@ -309,7 +324,12 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let (terms, unit) = (self.terms(), S::one() / self.jet.unit);
         // A coordinate moves by its velocity besides, and both are in units of the step.
         let mut of_q = self.monomials(&self.jet.q, (2, terms), coordinate, unit * unit);
-        let mut of_v = self.monomials(&self.jet.v, (1, terms - 1), coordinate, unit * unit);
+        let mut of_v = if self.first_order() {
+            let velocity = coordinate + self.jet.len / 2;
+            self.monomials(&self.jet.q, (1, terms - 1), velocity, unit)
+        } else {
+            self.monomials(&self.jet.v, (1, terms - 1), coordinate, unit * unit)
+        };
         of_q.insert(0, S::zero());
         of_v.push(S::zero());
         nest(&mut of_q);

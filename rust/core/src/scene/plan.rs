@@ -165,7 +165,7 @@ impl Plan {
         let in_parts = |with_step: &&Request| request.dt.is_none() && with_step.dt.is_some();
         let tolerance = with_step.as_ref().filter(in_parts).map(|request| request.rtol);
         let chooses_all = |with_step: &&Request| with_step.dt.is_none() && request.atol.is_none();
-        let held_to = with_step.as_ref().filter(chooses_all).map(|request| turning::held_to(request.rtol));
+        let held_to = with_step.as_ref().filter(chooses_all).map(turning::held_to);
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let held_to = held_to.or_else(|| tolerances::of_itself(automatic, request));

@@ -211,12 +211,12 @@ impl Series<Lanes> for Expanded {
         jet: &Jet<Lanes>,
         a: &mut [Lanes],
         first: bool,
-        _: &mut Ticker<'_>,
+        ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         // Beside others the rows are what is asked.
         self.alone = None;
         coefficient_tier(self, n, jet, a, first);
-        Ok(())
+        self.linear.iter_mut().try_for_each(|force| force.coefficient(n, jet, a, false, ticker))
     }
 
     fn takes_linear(&self) -> bool {

@@ -176,7 +176,7 @@ impl<S: Element> Pass<S> for Astray<'_, S> {
         let of_places = if second_order { x * x } else { x };
         let (mut squares, mut start) = ([V::zero(); 2], 0);
         for block in self.blocks {
-            let factor = if block.velocity { x / unit } else { of_places };
+            let factor = if block.velocity && second_order { x / unit } else { of_places };
             let (k, own) = (&rates[block.start..], &inverse[start..start + block.shape.rows]);
             squares = by_components!(block.shape.components, largest::<V>([k, k], factor, own, squares));
             start += block.shape.rows;

@@ -6,6 +6,7 @@
 //! V = −G m M/r − G m/(2 r³) (tr I − 3 n·I n), for each body with each mass beside it.
 
 mod apply;
+mod written;
 
 use super::bodies::{Arrangement, LaneBody, RigidBodies, Start};
 use super::loads::{End, Load, TorqueFunction};
@@ -111,6 +112,16 @@ impl Loads {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.acting.is_empty() && self.functions.is_empty()
+    }
+
+    /// What they come to on the only body, if all are torques along its axes.
+    pub(super) fn along_own_axes(&self) -> Option<[Lanes; 3]> {
+        let mut sum = [Lanes::zero(); 3];
+        for acting in &self.acting {
+            let Acting::InBody(_, torque) = acting else { return None };
+            (0..3).for_each(|c| sum[c] += torque[c]);
+        }
+        self.functions.is_empty().then_some(sum)
     }
 
     /// Adds those on the systems of one row of lanes.

@@ -323,4 +323,12 @@ impl Arrangement {
     pub const fn at(&self, body: usize) -> usize {
         self.points() + 4 * body
     }
+    /// Numbers of each half.
+    pub fn half(&self) -> usize {
+        self.at(self.bodies.len())
+    }
+    /// The rows of the centers of held bodies.
+    pub fn held(&self) -> impl Iterator<Item = usize> {
+        self.bodies.iter().filter(|body| body.pivoted).map(|body| body.row)
+    }
 }

@@ -85,6 +85,11 @@ impl Load {
         }
     }
 
+    /// Whether motions under it can be expanded in series: nobody knows what a function of the caller does.
+    pub const fn has_series(&self) -> bool {
+        !matches!(self, Self::Function { .. })
+    }
+
     /// The bodies of a scene of so many, `rigid` of them, that it makes depend on each other.
     pub fn pair(&self, particles: usize, rigid: usize) -> Option<(usize, usize)> {
         let Self::Spring { ends: [one, other], .. } = self else { return None };

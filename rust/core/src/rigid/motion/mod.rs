@@ -8,6 +8,7 @@ pub mod flows;
 pub mod loads;
 pub mod methods;
 pub mod runge_kutta;
+pub mod series;
 pub mod splitting;
 pub mod system;
 pub mod turn;

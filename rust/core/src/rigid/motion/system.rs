@@ -7,13 +7,15 @@
 use super::acting::Loads;
 use super::bodies::{Arrangement, LaneBody};
 use super::flows::{hold, settle_held, twist};
+use super::series::{Expand, InLanes, expanding};
 use super::splitting::Pulls;
 use super::turn::of_length_one;
 use super::vectors::{cross, dot, times_plus, turned, turned_back};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::numerics::element::{Element, PairMut, Pass, View};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
+use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::system::{Form, Needs, System};
 use crate::parallel::Ticker;
@@ -24,6 +26,8 @@ pub struct BodySystem {
     pulls: Pulls,
     /// A state that is looked at.
     at: State<Lanes>,
+    /// The same as series, for a method that asks for them.
+    series: Option<Box<dyn Expand>>,
 }
 
 impl BodySystem {
@@ -33,7 +37,16 @@ impl BodySystem {
         (arrangement, loads): (Arrangement, Loads),
         state: &State<Lanes>,
     ) -> Self {
-        Self { points, pulls: Pulls::new(arrangement, loads, 0.0), at: state.clone() }
+        Self { points, pulls: Pulls::new(arrangement, loads, 0.0), at: state.clone(), series: None }
+    }
+
+    /// With its series, if it has some.
+    ///
+    /// # Errors
+    /// Only errors of the library itself.
+    pub fn with_series(mut self, of: InLanes) -> Result<Self> {
+        self.series = expanding(&self.pulls.arrangement, &self.pulls.loads, of)?;
+        Ok(self)
     }
 
     /// Where bodies lie.
@@ -67,6 +80,16 @@ impl System<Lanes> for BodySystem {
         let (of_q, of_v) = rate.split_at_mut(at.q().len());
         Lanes::pass(Rates { arrangement, q: at.q(), v: at.v(), a, torque, of_q, of_v });
         Ok(())
+    }
+
+    fn expand(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
+        let without = || Error::Internal("a function of the caller has no series".to_owned());
+        let series = self.series.as_mut().ok_or_else(without)?;
+        series.expand(jet, &mut *self.points, ticker)
+    }
+
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
+        self.series.as_ref().and_then(|series| series.smooth_until(jet, h, &*self.points))
     }
 
     fn settle(&self, state: &mut State<Lanes>) {

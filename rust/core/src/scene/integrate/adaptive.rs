@@ -32,6 +32,7 @@ use crate::ode::transformed::Transformed;
 use crate::ode::trial::{Cost, Trial, trial};
 use crate::ode::{Embedded, Scheme};
 use crate::parallel::Ticker;
+use crate::rigid::motion::series::InLanes;
 use crate::rigid::motion::system::BodySystem;
 use core::iter::Enumerate;
 use core::slice;
@@ -57,7 +58,7 @@ pub(super) fn run(
     let elapsed = |&t: &f64| scale(job.scene.elapsed(t), -job.plan.units.time);
     let outputs: Arc<[f64]> = job.times.iter().map(elapsed).collect();
     let first = job.prepare(&units[0], ticker)?;
-    let own = Forces::own(job, &[&first], threads);
+    let own = Forces::own(job, &[&first], threads)?;
     let mut run = Run::new(job, first, own, &outputs)?;
     run.waiting = units.iter().enumerate();
     run.threads = threads;
@@ -115,15 +116,23 @@ enum Forces {
 
 impl Forces {
     /// Those of units in the lanes that follow nobody.
-    fn own(job: &Job<'_>, units: &[&Prepared], threads: usize) -> Self {
+    ///
+    /// # Errors
+    /// Only errors of the library itself.
+    fn own(job: &Job<'_>, units: &[&Prepared], threads: usize) -> Result<Self> {
         let dynamics = unit::dynamics(job.plan, units, threads);
-        match unit::assembled(job.plan, job.scene, units) {
-            Some(assembly) => {
-                let state = units[0].blank_state(1);
-                Self::Turning(Box::new(BodySystem::new(Box::new(dynamics), assembly, &state)))
-            }
-            None => Self::Own(dynamics),
+        let Some(assembly) = unit::assembled(job.plan, job.scene, units) else {
+            return Ok(Self::Own(dynamics));
+        };
+        let bodies = BodySystem::new(Box::new(dynamics), assembly, &units[0].blank_state(1));
+        if !matches!(job.plan.method.scheme, Scheme::Taylor(_)) {
+            return Ok(Self::Turning(Box::new(bodies)));
         }
+        let uniform = |unit: &&Prepared| {
+            job.plan.forces_of(unit.unit.copy).iter().all(|force| force.as_uniform().is_some())
+        };
+        let of = InLanes { alone: units.len() == 1, alike: units.iter().all(uniform) };
+        Ok(Self::Turning(Box::new(bodies.with_series(of)?)))
     }
 
     fn system(&mut self) -> &mut dyn System<Lanes> {
@@ -367,7 +376,7 @@ impl<'a> Run<'a> {
             // The first unit of all, in all lanes, has those with which the run was made.
             Forces::Own(_) if self.layout == Layout::Packed && index == Some(0) => {}
             Forces::Along(guided) => guided.take_up(self.job.plan, &units),
-            own => *own = Forces::own(self.job, &units[..taken], self.threads),
+            own => *own = Forces::own(self.job, &units[..taken], self.threads)?,
         }
         self.clock.restart(fresh, self.part.length);
         let Self { trial, state, clock, forces, norm, .. } = self;
