@@ -8,6 +8,7 @@ from typing import Any
 from visviva._arrays import number
 from visviva._event import Event, direction_of, make_event
 from visviva._event_arguments import check_two
+from visviva._event_functions import Told, name_of
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 from visviva.events import apsis, distance, energy, function, plane
@@ -39,6 +40,8 @@ def to_core(given: Any) -> list[dict[str, Any]]:
                 "expected one of visviva.events or a function f(t, position, velocity), "
                 f"got events[{index}] = {event!r}",
             )
+        if to_send[-1]["kind"] == "function":
+            to_send[-1]["function"] = Told(index, to_send[-1]["function"])
     return to_send
 
 
@@ -65,9 +68,9 @@ def descriptions(events: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _named(event: dict[str, Any]) -> dict[str, Any]:
-    call = event["function"]
+    told: Told = event["function"]
     kept = {key: value for key, value in event.items() if key != "sees_turning"}
-    return kept | {"function": None, "name": str(getattr(call, "__qualname__", type(call)))}
+    return kept | {"function": None, "name": name_of(told.function)}
 
 
 def from_description(description: dict[str, Any]) -> Event:

@@ -1,6 +1,6 @@
 """What functions among events take: points alone, or how rigid bodies are turned, too.
 
-The one idea: the signature tells, before anything runs.
+The one idea: the signature tells, before anything runs; and what a function raises while it runs says which one it was.
 """
 
 from __future__ import annotations
@@ -8,11 +8,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from visviva._keywords import check_call, takes
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["check_event_function", "sees_turning"]
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Told", "check_event_function", "name_of", "sees_turning"]
 
 #: What a function is called with, and beside rigid bodies.
 _OF_POINTS = ("t", "position", "velocity")
@@ -32,8 +36,39 @@ def check_event_function(call: Callable[..., float]) -> None:
     visviva.InvalidInput
         Naming ``call``, with what it is called with.
     """
-    if not sees_turning(call):
+    if sees_turning(call):
+        return
+    try:
         check_call("call", call, _OF_POINTS)
+    except InvalidInput as error:
+        raise InvalidInput(
+            "call", f"{error.message}, or beside rigid bodies as f({', '.join(_OF_RIGID_BODIES)})"
+        ) from None
+
+
+class Told:
+    """A function among the events of a run, whose errors say which of them raised it, and when.
+
+    The type of an error is left as it is.
+    """
+
+    __slots__ = ("function", "which")
+
+    def __init__(self, which: int, function: Callable[..., float]) -> None:
+        self.which = which
+        self.function = function
+
+    def __call__(self, t: float, *state: NDArray[np.float64]) -> float:
+        try:
+            return self.function(t, *state)
+        except Exception as error:
+            error.add_note(f"raised by events[{self.which}], the function {name_of(self.function)}, at t = {t!r}")
+            raise
+
+
+def name_of(function: object) -> str:
+    """What a function is called where it is told of."""
+    return str(getattr(function, "__qualname__", type(function).__qualname__))
 
 
 def __dir__() -> list[str]:
