@@ -367,6 +367,8 @@ def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -
     wanted_shape = "an array with one axis" if shape == (None,) else f"shape ({expected})"
     message = f"expected {wanted_shape}" + (f" with {known_lengths}" if known_lengths else "") + ", got "
     message += f"shape {came}" if shape == (None,) else f"{came}"
+    if shape == (3,) and not came:
+        message += "; give its three components"
     if len(shape) == 2 and came[::-1][1:] == shape[1:] and came[1:] != shape[1:]:
         message += "; the vector axis is the last: pass x.T"
     raise InvalidInput(name, message)

@@ -12,23 +12,24 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import SupportsFloat
 
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["Told", "check_event_function", "name_of", "sees_turning"]
+__all__ = ["check_event_function", "name_of", "sees_turning", "told"]
 
 #: What a function is called with, and beside rigid bodies.
 _OF_POINTS = ("t", "position", "velocity")
 _OF_RIGID_BODIES = (*_OF_POINTS, "orientation", "angular_velocity")
 
 
-def sees_turning(call: Callable[..., float]) -> bool:
+def sees_turning(call: Callable[..., SupportsFloat]) -> bool:
     """Whether a function takes orientations and angular velocities, too."""
     return not takes(call, _OF_POINTS) and takes(call, _OF_RIGID_BODIES)
 
 
-def check_event_function(call: Callable[..., float]) -> None:
+def check_event_function(call: Callable[..., SupportsFloat]) -> None:
     """Refuse a function that can be called in neither way.
 
     Raises
@@ -46,24 +47,18 @@ def check_event_function(call: Callable[..., float]) -> None:
         ) from None
 
 
-class Told:
-    """A function among the events of a run, whose errors say which of them raised it, and when.
+def told(which: int, function: Callable[..., SupportsFloat]) -> Callable[..., SupportsFloat]:
+    """A function among the events of a run, under its own name, whose errors say which of them raised it, and when."""
 
-    The type of an error is left as it is.
-    """
-
-    __slots__ = ("function", "which")
-
-    def __init__(self, which: int, function: Callable[..., float]) -> None:
-        self.which = which
-        self.function = function
-
-    def __call__(self, t: float, *state: NDArray[np.float64]) -> float:
+    def call(t: float, *state: NDArray[np.float64]) -> SupportsFloat:
         try:
-            return self.function(t, *state)
+            return function(t, *state)
         except Exception as error:
-            error.add_note(f"raised by events[{self.which}], the function {name_of(self.function)}, at t = {t!r}")
+            error.add_note(f"raised by events[{which}], the function {call.__qualname__}, at t = {t!r}")
             raise
+
+    call.__qualname__ = name_of(function)
+    return call
 
 
 def name_of(function: object) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva._elsewhere import OF_KEYWORDS, OF_RUNS, OF_SCENES, OF_THE_PACKAGE
 
 PAIR = vv.Particles([1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]])
 ORBIT = vv.Scene(PAIR, vv.Gravity(G=1.0))
@@ -145,3 +146,83 @@ def test_a_plan_whose_steps_are_those_of_events_alone_expects_no_number_of_them(
     without = BOOK.plan(t=10.0).cost()
     assert without is not None
     assert without.steps == 0
+
+
+SOLID = vv.rigid.box(2.0, 0.1, 0.4, 0.9)
+EARTH = {"Gravity": {"G": [1.0, 2.0]}}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: ORBIT.run(t=1.0, events=vv.events.apsis), r"events: events\[0\]: expected an event.*call apsis\(…\)"),
+        (lambda: ORBIT.run(t=1.0, events="apsis"), "events: expected a list of events, got str"),
+        (lambda: ORBIT.run(t=1.0, collisions=True), "collisions: expected one of merge, bounce, stop, got True"),
+        (ORBIT.run, r"t: .*got none; give it as run\(t=10.0\)"),
+        (lambda: ORBIT.run(t=1.0, steps=100), r"steps: .*; give output times as t, as np\.linspace"),
+        (vv.Gravity, r"G: .*got none; give it as Gravity\(1\.0\).*vv\.units\.SI\.G"),
+        (lambda: vv.UniformField(-9.81), r"g: expected shape \(3,\), got \(\); give its three components"),
+        (lambda: vv.Scene(PAIR, vv.Gravity), r"parts: .*got the class Gravity; make one of it: Gravity\(…\)"),
+        (lambda: vv.Scene(PAIR, lambda r: r), r"parts: .*got a function; a force by a formula is ExpressionForce"),
+        (lambda: ORBIT.ensemble(parameters=EARTH["Gravity"]), r"parameters: .*: {'Gravity': {'G': values}}"),
+        (lambda: ORBIT.ensemble(parameters={"gravity": EARTH["Gravity"]}), "parameters: .*did you mean 'Gravity'"),
+        (lambda: vv.ExpressionForce(potential="x**2"), r"potential: expected a function or.*sympy\.sympify"),
+        (lambda: vv.RigidBody(SOLID), r"mass: .* give mass=solid\.mass, inertia=solid\.tensor"),
+        (lambda: vv.RigidBody(2.0, SOLID), r"moments: .* give mass=solid\.mass, inertia=solid\.tensor"),
+        (lambda: vv.RigidBody(2.0, inertia=[1.0, 1.0, 1.0]), "inertia: .*; give principal moments as moments"),
+        (lambda: vv.RigidBody(2.0, inertia=[[1.0], [1.0, 1.0]]), "inertia: expected an array of real numbers"),
+        (
+            lambda: vv.RigidBody(2.0, [1, 1, 1], orientation=np.eye(3)),
+            r"orientation: .*quaternion_from_matrix makes one",
+        ),
+        (
+            lambda: vv.RigidBody(2.0, [1, 1, 1], orientation=[0, 0, 1]),
+            r"orientation: .*quaternion_from_euler makes one",
+        ),
+        (lambda: vv.RigidBody(2.0, [1, 1, 1], omega=[0, 0, 1]), "omega: .*; give it as angular_velocity"),
+    ],
+)
+def test_what_is_meant_is_told(wrong: Callable[[], object], message: str) -> None:
+    with pytest.raises(vv.InvalidInput, match="^" + message):
+        wrong()
+
+
+def test_what_the_cures_name_does_what_was_meant() -> None:
+    """As they are written in messages: the same body by its solid, the same turn by its matrix or its angles."""
+    body = vv.RigidBody(mass=SOLID.mass, inertia=SOLID.tensor)
+    assert body.moments is None
+    assert np.array_equal(body.inertia[0], SOLID.tensor)
+    turn = vv.rigid.quaternion_from_euler([0.0, 0.0, np.pi / 2])
+    # Of a quarter turn each component is 0 or the root of 1/2, some roundings off.
+    assert np.abs(turn) == pytest.approx([0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5)], rel=1e-15, abs=1e-16)
+    again = vv.rigid.quaternion_from_matrix(vv.rigid.matrix(turn))
+    # A rotation has two quaternions.
+    assert abs(again @ turn) == pytest.approx(1.0, rel=1e-15, abs=0)
+    assert len(ORBIT.ensemble(parameters=EARTH)) == 2
+
+
+def test_what_is_told_to_be_called_otherwise_is_so() -> None:
+    """None of these names is one of visviva's, which would never come to be told."""
+    out = ORBIT.run(t=1.0)
+    for name, told in OF_RUNS.items():
+        assert not hasattr(type(out), name)
+        with pytest.raises(AttributeError, match=re.escape(f"; it is {told}")):
+            getattr(out, name)
+    for name, told in OF_SCENES.items():
+        with pytest.raises(AttributeError, match=re.escape(told)):
+            getattr(ORBIT, name)
+    for name, told in OF_THE_PACKAGE.items():
+        with pytest.raises(AttributeError, match=re.escape(told)):
+            getattr(vv, name)
+    of_scenes = {"run": ORBIT.run, "ensemble": ORBIT.ensemble, "Particles": vv.Particles, "RigidBody": vv.RigidBody}
+    for (called, keyword), told in OF_KEYWORDS.items():
+        if called in of_scenes:
+            with pytest.raises(vv.UnknownKeyword, match=re.escape(told)):
+                of_scenes[called](**{keyword: 1.0})
+
+
+def test_expressions_of_what_is_told_are_those_of_the_run() -> None:
+    out = BOOK.run(t=[1.0])
+    assert eval(OF_RUNS["rotation"], {"vv": vv, "out": out}).shape == (1, 1, 3, 3)
+    pair = ORBIT.run(t=[0.0])
+    assert eval(OF_RUNS["distance"], {"np": np, "out": pair}).tolist() == [2.0]

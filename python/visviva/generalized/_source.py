@@ -229,6 +229,9 @@ def calls(
         return Expression(nodes, nodes.add(operation, (), value))
 
     def walk(argument: str, function: Any) -> int:
+        if isinstance(function, str):
+            cure = "sympy.sympify makes an expression of it"
+            raise InvalidInput(argument, f"expected a function or an expression of SymPy, got {function!r}; {cure}")
         if not callable(function):
             return nodes.constant(number(argument, function))
         first = expression_array(expression("variable", float(i)) for i in range(n))
