@@ -303,25 +303,17 @@ def __dir__() -> list[str]:
     return [*__all__, "__version__"]
 
 
-# What others call something, and what to use here.
-_ELSEWHERE = {
-    "Simulation": "make a visviva.Scene of Particles and forces, and run it: see 'coming from REBOUND'",
-    "integrate": "a scene runs itself: visviva.Scene(…).run(t=…)",
-    "odeint": "it is visviva.solve_ivp(fun, t_span, y0), whose function takes the time first",
-    "MjModel": "make a visviva.Scene of RigidBody and forces: see 'coming from MuJoCo'",
-}
-
-
 def _nearest(name: str) -> str:
     """The end of the message: where the name is, or the nearest one."""
     if name.startswith("_"):
         return ""
     from importlib import import_module
 
+    from visviva._elsewhere import OF_THE_PACKAGE
     from visviva._keywords import did_you_mean
 
-    if name in _ELSEWHERE:
-        return f"; {_ELSEWHERE[name]}"
+    if name in OF_THE_PACKAGE:
+        return f"; {OF_THE_PACKAGE[name]}"
     full = {room: import_module(f"visviva.{room}").__all__ for room in _ROOMS}
     for room, names in full.items():
         if name in names:

@@ -6,6 +6,7 @@ returns can go to the core as it is.
 """
 
 import math
+import re
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -40,6 +41,8 @@ _FLOAT64 = np.dtype(np.float64)
 _SURELY_SUMMED = 1e280
 # Made once: a union of types takes longer to make than to ask.
 _WHOLE, _OF_NUMPY = int | np.integer, np.ndarray | np.generic
+#: "1 kg", "-9.81m/s²", "5e3 km" and "1e-3µm", but not "1e5" or "1_000", which are numbers as they are.
+_NUMBER_WITH_UNIT = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*(?![eE][-+]?\d)([^\W\d_]|[°%])")
 _ADVICE = {
     "b": "a mask is not a number; pass x.astype(float) if zeros and ones are meant",
     "c": "pass x.real if the imaginary part is to be dropped",
@@ -299,7 +302,7 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
     kind, dtype = array.dtype.kind, array.dtype
     if kind in _ADVICE:
         what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{_came(value)} (dtype {dtype.name})"
-        raise InvalidInput(name, f"expected real numbers, got {what}; {_ADVICE[kind]}")
+        raise InvalidInput(name, f"expected real numbers, got {what}; {_with_unit(array) or _ADVICE[kind]}")
     if kind == "f" and dtype.itemsize > 8:
         raise InvalidInput(name, f"expected at most float64, got {dtype.name}; round it with x.astype(np.float64)")
     if dtype.itemsize == 8 and kind in "iu" and array.size and (array.max() > _EXACT or array.min() < -_EXACT):
@@ -308,6 +311,17 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
             "expected integers up to 2**53, which float64 holds exactly, got larger; round them with x.astype(float)",
         )
     return array
+
+
+def _with_unit(array: NDArray[Any]) -> str:
+    """What to do with texts of which one is a number with a unit; nothing where none is."""
+    for each in array.flat if array.dtype.kind in "OUT" else ():
+        if isinstance(each, str) and _NUMBER_WITH_UNIT.match(each):
+            return (
+                f"leave the unit of {str(each)!r} out and pass plain numbers, all in one system of units: vv.units has "
+                "several, with the constants in each"
+            )
+    return ""
 
 
 def _came(value: object) -> str:
@@ -353,6 +367,8 @@ def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -
     wanted_shape = "an array with one axis" if shape == (None,) else f"shape ({expected})"
     message = f"expected {wanted_shape}" + (f" with {known_lengths}" if known_lengths else "") + ", got "
     message += f"shape {came}" if shape == (None,) else f"{came}"
+    if shape == (3,) and not came:
+        message += "; give its three components"
     if len(shape) == 2 and came[::-1][1:] == shape[1:] and came[1:] != shape[1:]:
         message += "; the vector axis is the last: pass x.T"
     raise InvalidInput(name, message)

@@ -19,6 +19,8 @@ from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from typing import NoReturn
+
     from _typeshed import DataclassInstance
     from numpy.typing import ArrayLike
 
@@ -57,6 +59,16 @@ class BodyForce:
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         refuse_subclass(cls, "a custom torque is a CompiledTorque")
+
+    if not TYPE_CHECKING:  # to which there is no sum of them
+
+        def __add__(self, other: object) -> NoReturn:
+            raise TypeError(
+                f"{type(self).__name__}: forces on rigid bodies are not added; give a scene a list of them, as "
+                "Scene(body, [a, b]), where they add up"
+            )
+
+        __radd__ = __add__
 
     def _values(self) -> dict[str, Any]:
         return {each.name: getattr(self, each.name) for each in fields(cast("DataclassInstance", self))}

@@ -8,6 +8,7 @@ from typing import Any
 from visviva._arrays import number
 from visviva._event import Event, direction_of, make_event
 from visviva._event_arguments import check_two
+from visviva._event_functions import name_of, told
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 from visviva.events import apsis, distance, energy, function, plane
@@ -19,12 +20,15 @@ def to_core(given: Any) -> list[dict[str, Any]]:
     """What the core is told of ``events=``."""
     if isinstance(given, Event) or callable(given):
         given = [given]
-    if not isinstance(given, Sequence):
+    if not isinstance(given, Sequence) or isinstance(given, str):
         raise InvalidInput("events", f"expected a list of events, got {type(given).__name__}")
     to_send = []
     for index, event in enumerate(given):
         if isinstance(event, Event):
             to_send.append(event._to_core())
+        elif getattr(event, "__module__", None) == apsis.__module__:
+            name = getattr(event, "__name__", "Event")
+            raise InvalidInput("events", f"events[{index}]: expected an event, got what makes one: call {name}(…)")
         elif callable(event):
             try:
                 direction = direction_of(number("direction", getattr(event, "direction", 0)))
@@ -39,6 +43,8 @@ def to_core(given: Any) -> list[dict[str, Any]]:
                 "expected one of visviva.events or a function f(t, position, velocity), "
                 f"got events[{index}] = {event!r}",
             )
+        if to_send[-1]["kind"] == "function":
+            to_send[-1]["function"] = told(index, to_send[-1]["function"])
     return to_send
 
 
@@ -65,9 +71,8 @@ def descriptions(events: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _named(event: dict[str, Any]) -> dict[str, Any]:
-    call = event["function"]
     kept = {key: value for key, value in event.items() if key != "sees_turning"}
-    return kept | {"function": None, "name": str(getattr(call, "__qualname__", type(call)))}
+    return kept | {"function": None, "name": name_of(event["function"])}
 
 
 def from_description(description: dict[str, Any]) -> Event:

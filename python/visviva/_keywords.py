@@ -13,6 +13,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
+from visviva._elsewhere import MISSING, OF_KEYWORDS
 from visviva._text import article
 from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongArguments
 
@@ -30,46 +31,6 @@ __all__ = [
     "takes",
     "unknown_name",
 ]
-
-# What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
-_ELSEWHERE = {
-    ("run", "t_eval"): "the output times are t",
-    ("run", "t_span"): "give the end, or the output times, as t; the start is the scene's t0",
-    ("run", "t_end"): "give the end, or the output times, as t",
-    ("run", "dense_output"): "give as t the times you want: outputs between steps cost little and change no step",
-    ("run", "first_step"): "the first step follows from rtol; max_step bounds it",
-    ("run", "y0"): "the initial state is the scene's: see Scene.with_state",
-    ("run", "integrator"): "give it as method",
-    ("state", "semi_major_axis"): "give pericenter = a|1 − e| (of repulsion a(e + 1))",
-    ("state", "longitude_of_ascending_node"): "give it as node",
-    ("Particles", "m"): "give it as mass",
-    ("Particles", "x"): "give positions as position, of shape (N, 3)",
-    ("Particles", "pos"): "give it as position",
-    ("Particles", "v"): "give it as velocity",
-    ("Particles", "vel"): "give it as velocity",
-    ("from_elements", "a"): "give it as semi_major_axis",
-    ("from_elements", "e"): "give it as eccentricity",
-    ("from_elements", "inc"): "give it as inclination",
-    ("from_elements", "Omega"): "give it as longitude_of_ascending_node",
-    ("from_elements", "omega"): "give it as argument_of_pericenter",
-    ("from_elements", "f"): "give it as true_anomaly",
-    ("from_elements", "M"): "give it as mean_anomaly",
-    ("from_elements", "central_mass"): "give it as central",
-    ("from_elements", "node"): "give it as longitude_of_ascending_node",
-    ("from_elements", "apocenter"): "give semi_major_axis and eccentricity",
-    ("from_elements", "mu"): "it follows from G and the masses",
-}
-
-# Only scenes are saved while they run: what to do elsewhere, by the qualified name of what is called.
-_IN_PARTS = {
-    "Runs.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on from "
-    "visviva.load(path).final",
-    "GeneralizedEnsemble.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on "
-    "from visviva.load(path)[i].final, copy by copy",
-    "monte_carlo": "count events in parts: save each result, go on with first_event=result.next_event, and add them",
-    "Foil.run": "bombard in parts: save each result, go on with first_event=result.next_event, and add them",
-}
-_ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
 
 # How bodies of two Particles become those of one.
 JOINING = (
@@ -247,14 +208,17 @@ def _wrong(
     for parameter in parameters:
         name = parameter.name
         if parameter.kind in _NAMED and parameter.default is Parameter.empty and name not in {*given, *kwargs}:
-            return WrongArguments(name, f"expected with every call of {takes}, got none")
+            advice = MISSING.get((called, name))
+            return WrongArguments(
+                name, f"expected with every call of {takes}, got none{f'; give it {advice}' if advice else ''}"
+            )
     return None
 
 
 def _unknown(function: Callable[..., object], called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     expected = f"a keyword of {called} ({', '.join(names)})" if names else f"no keyword, {called} takes none"
-    by_name = _ELSEWHERE.get(("run" if called == "plan" else called, came))
-    elsewhere = _ELSEWHERE.get((function.__qualname__, came), by_name)
+    by_name = OF_KEYWORDS.get(("run" if called == "plan" else called, came))
+    elsewhere = OF_KEYWORDS.get((function.__qualname__, came), by_name)
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
 

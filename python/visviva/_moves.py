@@ -29,7 +29,7 @@ def displacement(position: ArrayLike, velocity: ArrayLike) -> tuple[NDArray[np.f
     >>> displacement([1, 0, 0], 3.0)
     Traceback (most recent call last):
       ...
-    visviva.errors.InvalidInput: velocity: expected shape (3,), got ()
+    visviva.errors.InvalidInput: velocity: expected shape (3,), got (); give its three components
     """
     return float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
 

@@ -203,6 +203,15 @@ def _without_axis(name: str, given: Any) -> InvalidInput:
     return InvalidInput("parameters", f"expected values of {name!r} with a leading axis over the copies, got {given!r}")
 
 
+def _hint(which: Any, forces: Sequence[Force]) -> str:
+    """What to write for a name that is none of a force: the nearest, or the force that has a parameter of that name."""
+    owner = next((each for each in forces if which in [p.name for p in each._parameters]), None)
+    if owner is not None:
+        return f"it is a parameter: {{{type(owner).__name__!r}: {{{which!r}: values}}}}"
+    near = did_you_mean(which, [name for each in forces for name in _names(each)]) if isinstance(which, str) else ""
+    return f"it has none like that{near}"
+
+
 def _place(scene: Scene, which: Any) -> int:
     """The place of a force that is given itself, by its place, or by the name of its class."""
     forces = scene.forces
@@ -224,7 +233,7 @@ def _place(scene: Scene, which: Any) -> int:
         which = which._resolved(scene.particles.names, len(scene.particles))
     found = [i for i, force in enumerate(forces) if which in (force, *_names(force))]
     if len(found) != 1:
-        why = "it has none like that" if not found else "it has several like that: give the place of one"
+        why = _hint(which, forces) if not found else "it has several like that: give the place of one"
         raise InvalidInput("parameters", f"expected a force of the scene ({shown}), got {which!r}; {why}")
     return found[0]
 

@@ -46,11 +46,20 @@ def sorted_parts(
             came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
             known = ", ".join(name for name in force_classes.__all__ if name != "Force")
             argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
-            raise InvalidInput(argument, f"expected {wanted}forces ({known}), got {came}")
+            raise InvalidInput(argument, f"expected {wanted}forces ({known}), got {came}{_cure(part)}")
     if len(found) > 1 or not (found or rigid):
         advice = JOINING if found else "the forces need bodies to act on"
         raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
     return cast("tuple[Part, ...]", all_parts), found, rigid
+
+
+def _cure(part: object) -> str:
+    """What to write for what is no part of a scene, if that is known."""
+    if isinstance(part, type):
+        return f"; make one of it: {part.__name__}(…)" if issubclass(part, Part) else ""
+    return (
+        "; a force by a formula is ExpressionForce(force=…), or potential=… where it has one" if callable(part) else ""
+    )
 
 
 def _flat(part: object) -> Sequence[object]:

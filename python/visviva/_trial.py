@@ -39,7 +39,7 @@ _NUMBERS = {name: axes for name, _, axes, _ in _core.columns()}
 
 
 def cost(asked: _core._Request, plan: Plan) -> Cost | None:
-    """What a run of what is asked would cost; None where a trial would take long or fails."""
+    """What a run of what is asked would cost; None where a trial would take long, fails or tells nothing."""
     copies, bodies = asked["mass"].shape
     rows = len(asked["times"]) + (1 if asked["end_only"] else 0)
     numbers = sum(3 * bodies if name in ("position", "velocity") else _NUMBERS.get(name, 3) for name in asked["record"])
@@ -79,6 +79,8 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         if fraction == 1.0 or seconds > (_LONGEST if few_steps else _SECONDS):
             break
         fraction = min(1.0, 4.0 * fraction)
+    if stats["steps"] == 0 and asked["events"] and rigid is not None:
+        return None  # without its events the motion has a closed form: a trial has no steps, and the run has
     if fraction < 1.0 and (stats["steps"] == 0 or (step is None and stats["steps"] < _FEWEST * paths)):
         return None
     seconds = min(seconds, run_stretch(tried, fraction)[1])  # the first may have been held up

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._html import Record, Sheet, Shown
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva._mergers import by_era
 from visviva._text import count
 from visviva._turning import spin_scale
 from visviva.errors import InvalidInput
+from visviva.forces import ExpressedForce
 from visviva.invariants import conserved, internal_motion, invariants_of, kept_by_forces, reference_point
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Conservation", "Drift"]
 
+#: The drifts of a report, in the order of its table, as its attributes have them.
+ROWS = ("energy", "momentum", "angular_momentum", "center_of_mass")
 _EPSILON = float(np.finfo(float).eps)
 
 
@@ -92,17 +95,22 @@ class Conservation(Shown):
     collisions : int
         Collisions of the run. Energy is not conserved by those that take some, nor by mergers, in which angular
         momentum becomes spin that no body has here.
+    without_potential : int
+        Forces given to `ExpressionForce` as ``force=`` or ``acceleration=``, whose work is in no potential energy, even
+        where they have one: given as ``potential=`` it is conserved together with the kinetic energy.
 
     References
     ----------
     H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 (König's theorem, angular momentum) and §
     3.4 (virial).
 
+    By the name of its row, as it is printed, a drift is there, too: ``kept["center of mass"]``.
+
     Examples
     --------
     >>> import visviva as vv
     >>> kept = vv.problems.figure_eight().scene.run(t=[1.0, 2.0], rtol=1e-12).conservation()
-    >>> kept.energy.max < 1e-10, kept.momentum.conserved, kept.about
+    >>> kept.energy.max < 1e-10, kept["momentum"].conserved, kept.about
     (True, True, 'origin')
     """
 
@@ -114,6 +122,7 @@ class Conservation(Shown):
     about: str
     massless: int
     collisions: int
+    without_potential: int = 0
 
     @property
     def rows(self) -> tuple[Drift, ...]:
@@ -127,6 +136,10 @@ class Conservation(Shown):
         ['energy', 'momentum', 'angular momentum', 'center of mass']
         """
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
+
+    def __getitem__(self, name: str) -> Drift:
+        drift: Drift = getattr(self, row_of(name))
+        return drift
 
     @property
     def _what_acts(self) -> str:
@@ -143,7 +156,8 @@ class Conservation(Shown):
             else (f"{row.name} (not conserved by {self._what_acts})", "", "", "", "")
             for row in self.rows
         ]
-        return Sheet("Conservation", rows, ("", "max", "end", "rms", "relative to"), f"virial {self.virial:.1e}")
+        below = "; ".join([f"virial {self.virial:.1e}", *self._hints])
+        return Sheet("Conservation", rows, ("", "max", "end", "rms", "relative to"), below)
 
     def __str__(self) -> str:
         lines = [f"{'':<34}{'max':>10}{'end':>10}{'rms':>10}{'relative to':>14}"]
@@ -155,7 +169,28 @@ class Conservation(Shown):
         lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<34}{self.virial:>10.1e}")
         if self.massless:
             lines.append(f"{count(self.massless, 'massless body', 'massless bodies')} not judged: no share in any row")
-        return "\n".join(lines)
+        return "\n".join([*lines, *self._hints])
+
+    @property
+    def _hints(self) -> list[str]:
+        if not self.without_potential:
+            return []
+        forces = count(self.without_potential, "force is", "forces are")
+        return [
+            f"{forces} given by components, whose work is in no energy; where there is a potential energy, "
+            "ExpressionForce(potential=…) keeps account of it"
+        ]
+
+
+def row_of(name: str) -> str:
+    """The attribute of a row by its name, as the table or the attribute has it.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For any other, with the nearest.
+    """
+    return one_of("name", name.replace(" ", "_") if isinstance(name, str) else name, ROWS)
 
 
 def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
@@ -206,6 +241,7 @@ def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Co
         about="center of mass" if point is None else "origin" if about_origin else "given point",
         massless=int(np.count_nonzero(mass == 0.0)),
         collisions=0 if collisions is None else len(collisions),
+        without_potential=sum(isinstance(each, ExpressedForce) and each.gives != "potential" for each in scene.forces),
     )
 
 

@@ -6,19 +6,21 @@ shows the copy that did worst.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import count
-from visviva.conservation import Drift, conservation_of
+from visviva.conservation import ROWS, Conservation, Drift, conservation_of, row_of
+from visviva.ensemble_trajectory import one_or_some
+from visviva.errors import InvalidInput
 from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -27,7 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
 
-_ROWS = ("energy", "momentum", "angular_momentum", "center_of_mass")
 #: Copies that ended so did what was asked.
 _WHOLE = (Status.OK, Status.STOPPED)
 _NUMBERS = tuple(each.name for each in fields(Drift) if each.name != "name")
@@ -104,6 +105,12 @@ class EnsembleConservation(Shown):
     status : ndarray of int8, shape (B,)
         How each copy ended, values of `Status`. The drifts of one that failed are those up to there.
 
+    Notes
+    -----
+    Indexed like a run: ``kept[i]`` is the `Conservation` of copy i (all NaN where that failed before its first row), a
+    slice that of some copies, and ``kept["energy"]`` a row by the name that is printed; ``kept[i]["energy"].max`` and
+    ``kept["energy"].max[i]`` are one number.
+
     References
     ----------
     H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 (König's theorem, angular momentum) and §
@@ -116,6 +123,8 @@ class EnsembleConservation(Shown):
     >>> kept = scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]]).run(t=[1.0, 2.0]).conservation()
     >>> kept.energy.max.shape, bool(kept.momentum.conserved.all()), kept.about
     ((2,), True, 'origin')
+    >>> bool(kept["energy"].max[1] == kept[1]["energy"].max), len(kept[1:])
+    (True, 1)
     """
 
     energy: DriftOfCopies
@@ -125,6 +134,30 @@ class EnsembleConservation(Shown):
     virial: NDArray[np.float64]
     about: str
     status: NDArray[np.int8]
+    _copies: tuple[Conservation, ...] = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self._copies)
+
+    def __iter__(self) -> Iterator[Conservation]:
+        return iter(self._copies)
+
+    @overload
+    def __getitem__(self, index: int) -> Conservation: ...
+    @overload
+    def __getitem__(self, index: slice) -> EnsembleConservation: ...
+    @overload
+    def __getitem__(self, index: str) -> DriftOfCopies: ...
+    def __getitem__(self, index: int | slice | str) -> Conservation | EnsembleConservation | DriftOfCopies:
+        if isinstance(index, str):
+            drift: DriftOfCopies = getattr(self, row_of(index))
+            return drift
+        chosen = one_or_some(index, len(self))
+        if isinstance(chosen, slice):
+            if not self._copies[chosen]:
+                raise InvalidInput("index", f"expected a slice of at least one of {len(self)} copies, got {index}")
+            return _of_copies(self._copies[chosen], self.status[chosen])
+        return self._copies[chosen]
 
     @property
     def rows(self) -> tuple[DriftOfCopies, ...]:
@@ -169,26 +202,39 @@ def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | Non
     found = [conservation_of(copy, about) if _has_rows(copy) else None for copy in out]
     # Where no copy has a row, that of the first is refused.
     known = next((each for each in found if each is not None), None) or conservation_of(out[0], about)
-    drifts = {name: _together([None if each is None else getattr(each, name) for each in found]) for name in _ROWS}
-    virial = np.array([np.nan if each is None else each.virial for each in found])
+    none = np.nan
+    energy, momentum, angular, center = (
+        Drift(row.name, scale=none, max=none, end=none, rms=none, slope=none, conserved=False) for row in known.rows
+    )
+    untold = replace(
+        known,
+        energy=energy,
+        momentum=momentum,
+        angular_momentum=angular,
+        center_of_mass=center,
+        virial=none,
+        collisions=0,
+    )
+    return _of_copies(tuple(untold if each is None else each for each in found), out.status)
+
+
+def _of_copies(found: tuple[Conservation, ...], status: NDArray[np.int8]) -> EnsembleConservation:
+    drifts = {name: _together([getattr(each, name) for each in found]) for name in ROWS}
+    virial = np.array([each.virial for each in found])
     virial.setflags(write=False)
-    return EnsembleConservation(**drifts, virial=virial, about=known.about, status=out.status)
+    return EnsembleConservation(**drifts, virial=virial, about=found[0].about, status=status, _copies=found)
 
 
 def _has_rows(copy: Trajectory) -> bool:
     return any(bool(np.isfinite(copy._column(name)).any()) for name in copy.recorded[:1])
 
 
-def _together(found: Sequence[Drift | None]) -> DriftOfCopies:
+def _together(rows: Sequence[Drift]) -> DriftOfCopies:
     """One quantity of all copies."""
-    name = next(each.name for each in found if each is not None)
-    none = np.nan
-    missing = Drift(name, scale=none, max=none, end=none, rms=none, slope=none, conserved=False)
-    rows = [missing if each is None else each for each in found]
     arrays = {each: np.array([getattr(row, each) for row in rows]) for each in _NUMBERS}
     for array in arrays.values():
         array.setflags(write=False)
-    return DriftOfCopies(name, **arrays)
+    return DriftOfCopies(rows[0].name, **arrays)
 
 
 def __dir__() -> list[str]:

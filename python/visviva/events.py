@@ -33,11 +33,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     import sympy
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from visviva.typing import EventDirection, SymbolicExpression
-
-    _Rows = NDArray[np.float64]
+    from visviva.typing import EventDirection, EventFunction, SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -324,7 +322,7 @@ def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int 
 
 @known_keywords
 def function(
-    call: Callable[[float, _Rows, _Rows], float] | Callable[[float, _Rows, _Rows, _Rows, _Rows], float],
+    call: EventFunction,
     *,
     direction: EventDirection = 0,
     terminal: bool | int = False,

@@ -16,7 +16,7 @@ from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
 from visviva.generalized._nodes import Nodes, not_compiled
-from visviva.generalized._source import calls
+from visviva.generalized._source import calls, refuse_other_arguments
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
@@ -52,7 +52,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     potential : sympy.Expr or callable, optional
         The potential energy V of a body, of its place and the time. The force is −∇V, derived exactly.
     force : sequence of three expressions, or callable that gives three, optional
-        The components of the force on a body, of its place, its velocity and the time.
+        The components of the force on a body, of its place, its velocity and the time. Its work is in no energy that is
+        told: where it has a potential, give that.
     acceleration : sequence of three expressions, or callable that gives three, optional
         Those of the force for each unit of mass, which acts on massless bodies, too.
     parameters : mapping of symbol or str to float, optional
@@ -130,6 +131,7 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
 def _components(argument: str, given: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
     if callable(given):
+        refuse_other_arguments(argument, given, "velocity", names)
         check_call(argument, given, ("position", "velocity", "t"), names)
         return tuple(_one_of(argument, not_compiled(given), c) for c in range(3))
     if isinstance(given, str) or not hasattr(given, "__len__") or len(given) != 3:

@@ -132,7 +132,8 @@ class Plan(Shown):
         Cost or None
             Steps and force evaluations are scaled from the trial where they are not known before. Seconds are those of
             this machine, as busy as it is. Events are not looked for in the trial. None where the trial fails or would
-            be long (10⁸ pairs in a step), and of what has run: see ``out.stats``.
+            be long (10⁸ pairs in a step), where rigid bodies move in closed form but for the steps on which events are
+            looked for, which no trial takes, and of what has run: see ``out.stats``.
 
         Examples
         --------

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._column_axes import COLUMN_AXES
+from visviva._elsewhere import OF_RUNS
 from visviva._exported import Columns, Exported, chosen_columns, labels
 from visviva._html import Sheet, Shown
 from visviva._keywords import frozen, known_keywords
@@ -37,20 +38,6 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
 
 __all__ = ["Recorded"]
-
-
-# What people look for from elsewhere, and where it is here.
-_ELSEWHERE = {
-    "y": "position and velocity",
-    "sol": "position and velocity at the times asked for; outputs between steps cost little and change no step",
-    "success": "status == vv.Status.OK",
-    "message": "status",
-    "nfev": "stats.evaluations",
-    "nsteps": "stats.steps",
-    "x": "position",
-    "v": "velocity",
-    "times": "t",
-}
 
 
 @known_keywords
@@ -84,7 +71,7 @@ class Recorded(Exported[ColumnName], Totals, Shown, ABC):
             )
 
     def _elsewhere(self, name: str) -> str:
-        return f"; it is {_ELSEWHERE[name]}" if name in _ELSEWHERE else ""
+        return f"; it is {OF_RUNS[name]}" if name in OF_RUNS else ""
 
     @property
     @abstractmethod

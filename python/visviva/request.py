@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache, partial, wraps
 from inspect import Parameter, Signature, signature
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast, get_args
 
 import numpy as np
 
@@ -107,6 +107,14 @@ def _word(name: str, value: object) -> str:
     return value if value.isascii() else value.encode(errors="replace").decode()
 
 
+def _rule(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        from visviva.typing import CollisionRule
+
+        raise InvalidInput(name, f"expected one of {', '.join(get_args(CollisionRule))}, got {value!r}")
+    return _word(name, value)
+
+
 def _words(name: str, value: object) -> list[str]:
     if isinstance(value, str):
         return [_word(name, value)]
@@ -190,7 +198,7 @@ class PlanRequest:
     max_steps: int | None = field(default=None, metadata=_sent_to_core(_or_none(whole_number)))
     record: ColumnName | Sequence[ColumnName] = field(default=_RECORDED, metadata=_sent_to_core(_words))
     events: Sequence[Event | EventFunction] = field(default=(), metadata=_sent_to_core(_events))
-    collisions: CollisionRule | None = field(default=None, metadata=_sent_to_core(_or_none(_word)))
+    collisions: CollisionRule | None = field(default=None, metadata=_sent_to_core(_or_none(_rule)))
     restitution: float | None = field(default=None, metadata=_sent_to_core(_or_none(number)))
 
     def to_core(self, prepared: _core._Scene, names: tuple[str, ...]) -> _core._Request:

@@ -24,6 +24,7 @@ from visviva.rigid._orientation import rotate, rotate_back
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from typing import NoReturn
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -227,6 +228,13 @@ class RigidBodies(FramedBodies, Shown):
 
     def __iter__(self) -> Iterator[RigidBodies]:
         return (self[body] for body in range(len(self)))
+
+    if not TYPE_CHECKING:  # to which there is no sum of them
+
+        def __add__(self, other: object) -> NoReturn:
+            raise TypeError("RigidBodies are not added; give a scene a list of them, as Scene([a, b])")
+
+        __radd__ = __add__
 
     def __repr__(self) -> str:
         fixed = int(np.count_nonzero(self.pivoted))

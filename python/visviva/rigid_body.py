@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from visviva._arrays import float_array, positive
+from visviva._elsewhere import SOLID
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.rigid._arguments import checked_rows
+from visviva.rigid._mass import MassProperties
 from visviva.rigid_bodies import RigidBodies
 
 if TYPE_CHECKING:
@@ -74,6 +78,7 @@ def RigidBody(  # noqa: N802
     """
     if name is not None and not (isinstance(name, str) and name.strip()):
         raise InvalidInput("name", f"expected a text that is not empty, got {name!r}")
+    _refuse_what_is_meant_otherwise(mass, moments, inertia, orientation)
     turn = checked_rows("orientation", orientation, (4,))
     vectors = {"position": position, "velocity": velocity, "angular_velocity": angular_velocity}
     return RigidBodies(
@@ -85,6 +90,29 @@ def RigidBody(  # noqa: N802
         names=None if name is None else [name],
         **{argument: float_array(argument, value, (3,))[None] for argument, value in vectors.items()},
     )
+
+
+def _refuse_what_is_meant_otherwise(mass: object, moments: object, inertia: object, orientation: object) -> None:
+    """Refuse what tells a body or a turn in another way, with what makes of it what is taken."""
+    for argument, value in {"mass": mass, "moments": moments, "inertia": inertia}.items():
+        if isinstance(value, MassProperties):
+            raise InvalidInput(argument, f"expected numbers, got a solid; {SOLID}")
+    if _shape(inertia) == (3,):
+        raise InvalidInput("inertia", "expected shape (3, 3), got (3,); give principal moments as moments")
+    shape = _shape(orientation)
+    if shape in ((3, 3), (3,)):
+        made = "matrix" if len(shape) == 2 else "euler"
+        raise InvalidInput(
+            "orientation",
+            f"expected a quaternion (x, y, z, w), got shape {shape}; vv.rigid.quaternion_from_{made} makes one",
+        )
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    try:
+        return np.shape(value)
+    except ValueError:  # of rows that differ in length, which are refused where they are read
+        return ()
 
 
 def __dir__() -> list[str]:

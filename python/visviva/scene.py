@@ -14,6 +14,7 @@ import numpy as np
 from visviva._arrays import number
 from visviva._body_force import BodyForce
 from visviva._continuation import with_continuation
+from visviva._elsewhere import OF_SCENES
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import known_keywords
@@ -38,29 +39,6 @@ if TYPE_CHECKING:
     from visviva.rigid_bodies import RigidBodies
 
 __all__ = ["Scene"]
-
-
-# What people look for from elsewhere, and where it is here.
-_ELSEWHERE = {
-    "integrate": "a scene runs to a time, and stays what it is: out = scene.run(t=…); out.final is the scene there",
-    "solve": "a scene runs to a time: scene.run(t=…)",
-    "simulate": "a scene runs to a time: scene.run(t=…)",
-    "step": "a scene runs to a time: scene.run(t=…)",
-    "add": "parts do not change: make a new Scene of more particles, and of particles and forces",
-    "move_to_com": "it is center_of_mass_frame()",
-    "orbits": "it is elements(about=…)",
-    "energy": "it is invariants().energy",
-    "angular_momentum": "it is invariants().angular_momentum",
-    "lyapunov_exponents": "the largest is megno(t=…).lyapunov_exponent; a Lagrangian has all",
-    "init_megno": "it is megno(t=…)",
-    "t": "it is t0; run(t=…) takes the end",
-    "dt": "it is an argument of run",
-    "position": "it is particles.position",
-    "velocity": "it is particles.velocity",
-    "mass": "it is particles.mass",
-    "plot": "a run has pictures: scene.run(t=…).plot()",
-    "animate": "a run has pictures: scene.run(t=…).animate(…)",
-}
 
 
 @known_keywords
@@ -118,7 +96,7 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
     if not TYPE_CHECKING:  # a type checker that saw this function would let every misspelt name pass
 
         def __getattr__(self, name: str) -> Any:
-            advice = f"; {_ELSEWHERE[name]}" if name in _ELSEWHERE else ""
+            advice = f"; {OF_SCENES[name]}" if name in OF_SCENES else ""
             raise AttributeError(f"'Scene' object has no attribute {name!r}{advice}", name=name, obj=self)
 
     def __init__(

@@ -68,8 +68,14 @@ __all__ = [
     "TransformationName",
 ]
 
-EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], SupportsFloat]
-"""A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
+EventFunction: TypeAlias = (
+    Callable[[float, NDArray[np.float64], NDArray[np.float64]], SupportsFloat]
+    | Callable[
+        [float, NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]], SupportsFloat
+    ]
+)
+"""A function whose zeros are events: of time, positions (N, 3) and velocities (N, 3), and beside rigid bodies of their
+orientations (R, 4) and angular velocities (R, 3), too."""
 
 SymbolicExpression: TypeAlias = "sympy.Expr | Expression | float"
 """An expression of SymPy, one that a function of plain Python made, or a number."""

@@ -13,6 +13,7 @@ import pytest
 from event_scenes import kepler
 
 import visviva as vv
+from visviva._event_descriptions import descriptions, from_description, to_core, with_body_indices
 
 
 @pytest.mark.parametrize("method", ["dop853", "verner98"])
@@ -35,3 +36,30 @@ def test_a_function_that_is_never_a_number_is_told(how: dict[str, Any]) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", vv.AccuracyWarning)
         scene.run(1.0, events=[lambda t, x, v: float("nan") if t < 0.5 else 1.0], **how)
+
+
+def test_of_events_a_result_keeps_what_tells_of_them_and_of_a_function_its_name_alone() -> None:
+    """So that it can be written to a file: not whether it looks at rigid bodies, which only a run of it needs."""
+
+    def height(t: float, position: Any, velocity: Any) -> float:
+        return float(position[0, 2])
+
+    kept = descriptions(to_core([height, vv.events.energy(0.5, direction=-1, terminal=True)]))
+    name = "test_of_events_a_result_keeps_what_tells_of_them_and_of_a_function_its_name_alone.<locals>.height"
+    assert kept == [
+        {"kind": "function", "function": None, "name": name, "direction": 0.0, "last": None},
+        {"kind": "energy", "value": 0.5, "direction": -1.0, "last": 1},
+    ]
+    assert from_description(kept[1]) == vv.events.energy(0.5, direction=-1, terminal=True)
+    assert dict(from_description(kept[0]).parameters) == {"name": name}
+
+
+def test_names_of_bodies_are_resolved_where_an_event_has_some() -> None:
+    """And no others: an event without bodies, or with indices, is told to the core as it came."""
+    given = to_core([vv.events.energy(0.5), vv.events.distance("Sun", 2, below=1.0), vv.events.apsis(1, "Sun")])
+    there = with_body_indices(given, ("Sun", "Earth", "Mars"))
+    assert there[0] == given[0]
+    assert (there[1]["first"], there[1]["second"], there[1]["distance"]) == (0, 2, 1.0)
+    assert (there[2]["body"], there[2]["about"]) == (1, 0)
+    with pytest.raises(vv.InvalidInput, match="second: expected two bodies, got 0 twice"):
+        with_body_indices(to_core([vv.events.distance("Sun", 0, below=1.0)]), ("Sun", "Earth"))

@@ -147,6 +147,12 @@ vv.systems.pendulum().run(1.0, events=["theta"]).events.to_pandas(["momentun"]) 
 events = vv.scattering.scattering_events(atom, beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1)
 events["channel"]
 events["chanel"]  # wrong
+scene.run(1.0, events=[lambda t, r, v: r[0, 0], lambda t, r, v, q, w: q[0, 0]])
+scene.run(1.0, events=[lambda t, y: y[0]])  # wrong
+kept = scene.ensemble(radius=[[0.1, 0.1]]).run(1.0).conservation()
+drifts: tuple[float, np.typing.NDArray[np.float64]] = kept[0]["energy"].max, kept["energy"].max
+kept[0]["energy"].maximum  # wrong
+vv.RotationalDrag(1.0) + vv.RotationalDrag(1.0)  # wrong
 vv.events.plane([0, 0, 0], [0, 1, 0], direction=-1)
 vv.events.plane([0, 0, 0], [0, 1, 0], direction=2)  # wrong
 vv.systems.henon_heiles().poincare("x", t=1.0, direction=2)  # wrong

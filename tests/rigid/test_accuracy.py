@@ -139,6 +139,27 @@ def test_copies_with_forces_of_their_own_are_looked_at_by_these() -> None:
     assert out.stats.evaluations > 2 * 10_000  # of both
 
 
+@pytest.mark.parametrize("own", ["moments", "axes"])
+def test_copies_with_bodies_of_their_own_are_looked_at_by_these(own: str) -> None:
+    """With the moments of another copy, or its own about the axes of another, no tumbling body keeps its energy."""
+    both = np.array([[1.5, 0.5, 0.0], [0.5, 1.5, 0.0], [0.0, 0.0, 2.5]])
+    # Other moments about the same axes; or the same ones about others.
+    more_alike = np.array([[1.5, 0.1, 0.0], [0.1, 1.5, 0.0], [0.0, 0.0, 2.9]])
+    other = {"moments": more_alike, "axes": both * np.array([[1, -1, 1], [-1, 1, 1], [1, 1, 1]])}[own]
+    anchored = vv.AttachedSpring(0, [0.0, 0.0, 0.0], stiffness=2.0, anchor=[0.0, 0.0, 1.0])
+    scene = vv.Scene(vv.RigidBody(1.0, inertia=both, angular_velocity=[3.0, -2.0, 1.0]), anchored)
+    copies = scene.ensemble(inertia=[[both], [other]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        out = copies.run(t=[0.0, 1.0], method="rk4", dt=0.01)
+    # rk4 with a hundred steps to a turn: at most (0.04)⁵/120 of the energy in each of 100.
+    assert out.conservation().energy.max.max() < 1e-6
+    # What the look would tell of the second copy if it took its body for the first: over 1 in 100.
+    spin = out.angular_velocity[1, :, 0]
+    taken_for_first = 0.5 * np.einsum("ti,ij,tj->t", spin, both, spin)
+    assert abs(taken_for_first[-1] - taken_for_first[0]) > 0.05 * taken_for_first[0]
+
+
 def test_bodies_that_end_in_one_place_are_no_error() -> None:
     """Of which no energy is told."""
     ball = vv.Particles([1.0], [[-1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])

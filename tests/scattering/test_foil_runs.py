@@ -145,11 +145,12 @@ def test_histograms_go_to_hist_xarray_and_pandas(forced):
     assert len(frame.columns) == len(data) == (1 if forced is None else 3)
     assert (filled.values() == tally.values()).all()
     sums = filled.values(flow=True)
-    # Three numbers are added up.
+    # Three numbers are added up, in another order: a rounding of each sum, and one of the fraction times 2000.
     assert sums.sum() == pytest.approx(out.fraction("transmitted").value * 2000, rel=1e-15, abs=0)
     if forced is None:
         assert sums.tolist() == [tally.underflow, *tally.counts.tolist(), tally.overflow]
     else:
-        # Those of a tally are less (Σ w)²/N, as the number of ions is fixed.
+        # Those of a tally are less (Σ w)²/N, as the number of ions is fixed. Two thirds of the larger term are left, so
+        # that the roundings of a square, a quotient and two differences stay below ten units in the last place of it.
         less = tally.values() ** 2 / 2000
         assert filled.variances() - less == pytest.approx(tally.variances(), rel=1e-14, abs=0)

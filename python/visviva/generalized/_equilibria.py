@@ -18,8 +18,8 @@ from visviva.errors import InvalidInput
 from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
 from visviva.generalized._level_directions import stays
-from visviva.generalized._matrices import Sizes, matrices, matrices_along
-from visviva.generalized._multiple_zeros import at_rest, left_open, round_off, settled, units
+from visviva.generalized._matrices import LAST_DIGITS, Sizes, matrices, matrices_along
+from visviva.generalized._multiple_zeros import at_rest, open_about, round_off, settled, units
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._searches import (
     SAME,
@@ -40,15 +40,14 @@ if TYPE_CHECKING:
 
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["Equilibrium", "asked_at_rest", "equilibria", "equilibrium_at"]
+__all__ = ["MADE_OF_THEM", "Equilibrium", "asked_at_rest", "equilibria", "equilibrium_at"]
 
 #: Places that differ by less than this many times what forces leave open are one.
 _ONE = 4.0
 #: On constraints equilibria are looked for as far as starts reach, which come near the ends of a circle.
 _BEYOND_STARTS = 1.1
-#: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
-_LAST_DIGITS = 2.0**-51
-_MADE_OF_THEM = 0.1
+#: What part of a mass matrix, or of what momenta do, the last digits of a place make where it has none.
+MADE_OF_THEM = 0.1
 
 
 @known_keywords
@@ -119,13 +118,12 @@ def asked_at_rest(system: Lagrangian) -> AtRest:
         rounding[:] = small.all(axis=1)
         return rounding
 
-    def open_about(each: Equilibrium) -> NDArray[np.float64]:
+    def left_open(each: Equilibrium) -> NDArray[np.float64]:
         size = np.full(len(each.position), np.abs(each.position).max())
-        found = left_open(energy, each.position, size, units(system, each.position), curved=True)
-        return np.zeros(len(size)) if found is None else np.abs(found)
+        return open_about(energy, each.position, size, units(system, each.position), len(size))
 
     return AtRest(
-        lambda places: matrices_along(system, places), balanced, open_about, lambda places: equilibria(system, places)
+        lambda places: matrices_along(system, places), balanced, left_open, lambda places: equilibria(system, places)
     )
 
 
@@ -289,11 +287,11 @@ def _reached(
 
 def _mass_is_singular(system: Lagrangian, place: NDArray[np.float64]) -> bool:
     """Tell whether a coordinate has no mass at a place, but for what the last digits of the place make of it."""
-    masses = [matrices(system, where).mass for where in (place, place * (1.0 + _LAST_DIGITS))]
+    masses = [matrices(system, where).mass for where in (place, place * (1.0 + LAST_DIGITS))]
     try:
         for mass in masses:
             np.linalg.inv(mass)
     except np.linalg.LinAlgError:
         return True
     mass, nudged = (np.abs(each).max(axis=1) for each in masses)
-    return bool((np.abs(nudged - mass) > _MADE_OF_THEM * mass).any())
+    return bool((np.abs(nudged - mass) > MADE_OF_THEM * mass).any())

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva._arrays import number
 from visviva._event import direction_of
+from visviva._event_functions import name_of, told
 from visviva._event_table import Lines
 from visviva._exported import Columns, chosen_columns
 from visviva._keywords import check_call, did_you_mean, known_keywords
@@ -75,8 +76,7 @@ def described(events: Sequence[Event]) -> tuple[Event, ...]:
         own = [value for _, value in event.parameters if callable(value) and not hasattr(value, "free_symbols")]
         if not own:
             return event
-        name = str(getattr(own[0], "__qualname__", type(own[0]).__qualname__))
-        return Event(event.kind, (("name", name),), event.direction, event.terminal)
+        return Event(event.kind, (("name", name_of(own[0])),), event.direction, event.terminal)
 
     return tuple(map(kept, events))
 
@@ -108,7 +108,7 @@ def _event_to_core(system: States, index: int, event: Event) -> dict[str, Any]:
             to_send["energy"] = parameters["value"]
         case _ if "function" in parameters:
             check_call("events", parameters["function"], ("t", "position", system._second_name))
-            to_send["function"] = parameters["function"]
+            to_send["function"] = told(index, parameters["function"])
         case kind:
             raise InvalidInput("events", f"events[{index}]: expected an event of visviva.events, got the kind {kind!r}")
     return to_send

@@ -12,10 +12,10 @@ import numpy as np
 
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
-from visviva.generalized._equilibria import Equilibrium, asked_at_rest, equilibrium_at
+from visviva.generalized._equilibria import MADE_OF_THEM, Equilibrium, asked_at_rest, equilibrium_at
 from visviva.generalized._hamiltonian_at_rest import at_zeros_of_forces, forces_at_rest, states_at_rest
 from visviva.generalized._matrices import LAST_DIGITS, Sizes
-from visviva.generalized._multiple_zeros import left_open, round_off, told_apart
+from visviva.generalized._multiple_zeros import open_about, round_off, told_apart
 from visviva.generalized._newton import rates_and_slopes, reached, scales_of
 from visviva.generalized._other_sizes import AtRest, with_other_sizes
 from visviva.generalized._searches import (
@@ -39,9 +39,6 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["fixed_points"]
-
-#: What part of what momenta do the last digits of a state make at a pole.
-_MADE_OF_THEM = 0.1
 
 
 def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -84,16 +81,15 @@ def _asked_by_momenta(system: Hamiltonian) -> AtRest:
         rounding[known] = small.all(axis=1)
         return rounding
 
-    def open_about(each: Equilibrium) -> NDArray[np.float64]:
+    def left_open(each: Equilibrium) -> NDArray[np.float64]:
         state = np.concatenate([each.position, each.momentum])
         scales = scales_of(system, state[None])
-        found = left_open(energy, state, scales.sizes, scales.units, curved=True)
-        return np.zeros(len(each.position)) if found is None else np.abs(found[: len(each.position)])
+        return open_about(energy, state, scales.sizes, scales.units, len(each.position))
 
     return AtRest(
         lambda places: forces_at_rest(system, places),
         balanced,
-        open_about,
+        left_open,
         lambda places: fixed_points(system, states_at_rest(system, places)[0]),
     )
 
@@ -172,7 +168,7 @@ def _is_pole(system: Hamiltonian, state: NDArray[np.float64]) -> bool:
     beside = np.stack([state, state * (1.0 + LAST_DIGITS)])
     with np.errstate(invalid="ignore"):
         here, there = rates_and_slopes(system, beside)[1][:, :n, n:]
-        return not bool((np.abs(there - here) <= _MADE_OF_THEM * np.abs(here).max(axis=1, keepdims=True)).all())
+        return not bool((np.abs(there - here) <= MADE_OF_THEM * np.abs(here).max(axis=1, keepdims=True)).all())
 
 
 def _forces(system: Hamiltonian, states: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

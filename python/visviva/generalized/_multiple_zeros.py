@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.generalized._lagrangian import Lagrangian
     from visviva.generalized._matrices import Sizes
 
-__all__ = ["at_rest", "is_simple", "left_open", "round_off", "settled", "told_apart", "units"]
+__all__ = ["at_rest", "is_simple", "left_open", "open_about", "round_off", "settled", "told_apart", "units"]
 
 _EPSILON = float(np.finfo(float).eps)
 #: Roundings of what forces are the sums of.
@@ -156,6 +156,14 @@ def left_open(
         told = direction * (direction @ rounding[0]) / values[-1]
         along = np.fmax(along, np.fmin(told, _WITHIN[-1] * size) / _ONE)
     return np.where(along > np.abs(left), np.copysign(along, softest), left)
+
+
+def open_about(
+    energy: Energy, place: NDArray[np.float64], size: NDArray[np.float64], unit: NDArray[np.float64], coordinates: int
+) -> NDArray[np.float64]:
+    """How far each of the first coordinates of an equilibrium may be from it until slopes are seen, as `left_open`."""
+    found = left_open(energy, place, size, unit, curved=True)
+    return np.zeros(coordinates) if found is None else np.abs(found[:coordinates])
 
 
 def _along_the_ground(

@@ -26,28 +26,38 @@ if TYPE_CHECKING:
 
 __all__ = ["AtRest", "with_other_sizes"]
 
-#: Sizes of lengths that are looked at, and what is of one.
+#: Sizes of lengths that are looked at: beside 1, smaller or larger ones leave no digit of either in a sum. What is
+#: within √10 of a power of ten is of that size, so that every length is of one.
 _SIZES = 10.0 ** np.arange(-15.0, 16.0)
 _HALF_WAY = 10.0**0.5
-#: Starts at each, until something is found there.
+#: Starts at each, until something is found there: at all sizes together as many as a search over a turn has, some 3000.
 _FEW = 96
-#: Equilibria of more sizes than this, or more of one, are those of what goes on and on, as cos(x) does.
+#: Equilibria of more sizes than this, or more of one, are those of what goes on and on: cos(x) has some at each of the
+#: 16 sizes from 1 on, and of what is built of a few lengths each is of its own.
 _MOST_SIZES = 4
 _MOST = 100
-#: Of a curve of them so many are told at most; on it this part of the largest stiffness is none.
+#: Of a curve of them so many are told at most, as one looks at a circle every 15°. On it this part of the largest
+#: stiffness is none: places that Newton's steps come to are off by far less, and what is softer has no sharp zero.
 _MOST_OF_A_CURVE = 24
 _LEVEL = 1e-6
-#: Newton's steps from starts of the right size, and what part of that the last one may be.
+#: Newton's steps from starts of the right size, and what part of that the last one may be. They halve the distance from
+#: a double zero, so that it takes some 33 of them; from a simple one that step has squared it to less than rounding,
+#: 1e-20.
 _STEPS = 40
 _ARRIVED = 1e-10
-#: Forces are looked at this part of the size aside, where they are not those of a zero by rounding.
+#: Forces are looked at this part of the size aside, where they are not those of a zero by rounding: a force of sixth
+#: order is seen there, 1e-12 of what it is at the whole size.
 _ASIDE = 1e-2
-#: Places are one that differ by less than this part of their sizes.
+#: Places are one that differ by less than this part of their sizes: a double zero is where its force is round-off,
+#: 1e-16, within the root of that, 1e-8; that a hundred times.
 _ONE = 1e-6
-#: What is nearer to a place than this part of its size may be that one, within so much of what forces leave open.
+#: What is nearer to a place than this part of its size may be that one, within so much of what forces leave open: each
+#: of the two may be off by that, and it by a factor of 2. Forces leave 1/128 open at most, which so often is less than
+#: this.
 _BESIDE = 0.1
 _LEFT_OPEN = 4.0
-#: Coordinates that are this part of others may be what rounding has left of 0.
+#: Coordinates that are this part of others may be what rounding has left of 0: 45 units in the last place, of sums of
+#: as many numbers.
 _ROUNDED = 1e-14
 
 

@@ -13,7 +13,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
-__all__ = ["Source", "calls", "described"]
+__all__ = ["Source", "calls", "described", "refuse_other_arguments"]
 
 #: What the second half of a state is.
 _SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
@@ -189,7 +189,7 @@ def _parameter(sp: Any, t: Any, key: Any, function: Any) -> Any:
     return named[0] if named else sp.Symbol(key)
 
 
-def _refuse_other_arguments(
+def refuse_other_arguments(
     argument: str, function: Callable[..., Any], second_name: str, parameters: tuple[str, ...]
 ) -> None:
     """Refuse what would be taken for something else, or what no parameter is given for.
@@ -229,12 +229,15 @@ def calls(
         return Expression(nodes, nodes.add(operation, (), value))
 
     def walk(argument: str, function: Any) -> int:
+        if isinstance(function, str):
+            cure = "sympy.sympify makes an expression of it"
+            raise InvalidInput(argument, f"expected a function or an expression of SymPy, got {function!r}; {cure}")
         if not callable(function):
             return nodes.constant(number(argument, function))
         first = expression_array(expression("variable", float(i)) for i in range(n))
         second = expression_array(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
-        _refuse_other_arguments(argument, function, second_name, parameters)
+        refuse_other_arguments(argument, function, second_name, parameters)
         check_call(argument, function, ("position", second_name, "t"), parameters)
         return recorded(
             nodes,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame, IntervalIndex
     from xarray import Dataset
 
-__all__ = ["ExportedTally", "OfStrata", "dataset", "intervals"]
+__all__ = ["ExportedTally", "OfOneQuantity", "OfStrata", "dataset", "intervals"]
 
 
 @known_keywords
@@ -141,6 +141,11 @@ class ExportedTally:
         {'lab_angle': 10, 'energy': 10}
         """
         return dataset(dict(self._axes()), self._columns(), self._about())
+
+
+@known_keywords
+class OfOneQuantity(ExportedTally):
+    """Base of tallies of one axis, whose bins are the rows of a table."""
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame``: a row for each bin, the columns those of `to_xarray`.

@@ -16,7 +16,7 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_foil
-from visviva.scattering._exported import ExportedTally
+from visviva.scattering._exported import OfOneQuantity
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def summed(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) 
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class FoilTally(ExportedTally, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class FoilTally(OfOneQuantity, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Attributes

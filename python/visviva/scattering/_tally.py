@@ -13,7 +13,7 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_tally, poisson_interval
-from visviva.scattering._exported import OfStrata
+from visviva.scattering._exported import OfOneQuantity, OfStrata
 from visviva.scattering._weights import added_strata, read_only, same, variances, weighted_counts
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class CrossSection(NamedTuple):
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class Tally(OfStrata, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
