@@ -281,8 +281,8 @@ class AccuracyWarning(UserWarning):
     know of is looked at, too: orbits, and charges that `boris` turns, with fewer than six steps to a turn; and of
     Runge-Kutta methods the first step and one from the end, against two of half the length, as under drag and of
     massless bodies. The message names the figure and a step that would do. So are told a step longer than the run,
-    a function among the events that gave NaN throughout, and a foil that is thinner than atoms are apart or than the way
-    between two collisions.
+    a function among the events that gave NaN throughout, and a foil that is thinner than atoms are apart or than the
+    way between two collisions.
 
     Examples
     --------
