@@ -6,7 +6,7 @@ two places are one where they differ by round-off, or along a coordinate that no
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
+from visviva.generalized._continua import Ground, some_of_each
 from visviva.generalized._level_directions import stays
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, left_open, round_off, settled, units
@@ -69,6 +70,10 @@ class Equilibrium(Record):
         Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)
         The momenta there, which need not be zero.
+    continuum : int
+        In how many directions other equilibria go on from there: 0 of one by itself, 1 on a curve of them, 2 on a
+        surface. What may be moved along coordinates that nothing depends on is not counted, nor are constraints looked
+        at.
 
     References
     ----------
@@ -85,6 +90,7 @@ class Equilibrium(Record):
     stable: bool
     frequencies: NDArray[np.float64]
     momentum: NDArray[np.float64]
+    continuum: int = 0
 
 
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -106,6 +112,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     is_angle = angles(*matrices_along(system, turned(first)))
     found = _found(system, starts, within(first, is_angle))
     found = with_other_sizes(system, asked_at_rest(system), is_angle, found)
+    found = some_of_each(_ground(system), found)
     return sorted(found, key=lambda each: tuple(each.position))
 
 
@@ -129,6 +136,11 @@ def asked_at_rest(system: Lagrangian) -> AtRest:
     )
 
 
+def _ground(system: Lagrangian) -> Ground:
+    asked = asked_at_rest(system)
+    return Ground(asked.forces, asked.balanced, distinguishing_coordinates(system))
+
+
 def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
     """Equilibria from starts (S, n) of about one size, or of those with coordinates up to most (n)."""
     n, sizes = len(system.coordinates), Sizes(system)
@@ -143,12 +155,15 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.flo
     results: list[Equilibrium] = []
     size = _sizes(np.concatenate([starts, reached]))
     without_mass, without_slopes = [], []
-    for place in _once(reached, starts, distinguishing):
+    ground, places = _ground(system), np.array(_once(reached, starts, distinguishing)).reshape(-1, n)
+    if most is not None:
+        places = places[ground.some(places, size)]
+    for place, goes_on in zip(places, ground.goes_on(places, size).tolist(), strict=True):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue
         try:
-            results.append(equilibrium_at(system, sizes, place, size))
+            results.append(replace(equilibrium_at(system, sizes, place, size), continuum=goes_on))
         except InvalidInput as refusal:
             if not all(np.isfinite(part).all() for part in matrices(system, place)):
                 without_slopes.append(refusal)
