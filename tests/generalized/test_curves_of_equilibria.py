@@ -75,6 +75,24 @@ def test_a_level_place_is_no_curve(potential: Callable[[Any], Any]) -> None:
         assert [each.continuum for each in found] == [0] * len(found)
 
 
+def test_a_circle_on_a_sphere_is_a_dozen_places() -> None:
+    """V = (z − ½)² on the unit sphere: 925 of the circle z = ½ were told. ω² = 2 (1 − z²) = 3/2; poles are hills."""
+    system = vv.Lagrangian(
+        lambda q, v, t: sum(each**2 for each in v) / 2 - (q[2] - 0.5) ** 2,
+        ["x", "y", "z"],
+        constraints=[lambda q, v, t: q[0] ** 2 + q[1] ** 2 + q[2] ** 2 - 1],
+        position=[1.0, 0.0, 0.0],
+        velocity=[0.0, 0.0, 0.0],
+    )
+    found = system.equilibria()
+    assert Counter((each.continuum, each.stable) for each in found) == {(0, False): 2, (1, True): 12}
+    for each in found:
+        # Places are told to 1e-8 of their size.
+        assert each.position[2] == pytest.approx(0.5 if each.stable else np.sign(each.position[2]), rel=1e-8, abs=0)
+        if each.stable:
+            assert each.frequencies == pytest.approx([np.sqrt(1.5)], rel=1e-7, abs=0)
+
+
 def test_what_a_user_asks_near_is_told_place_by_place() -> None:
     system = both_forms(lambda q: (q[0] ** 2 + q[1] ** 2 - 1) ** 2)[1]
     turns = np.linspace(0.0, 6.0, 30)

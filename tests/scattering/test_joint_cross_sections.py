@@ -103,3 +103,11 @@ def test_importance_leaves_it_where_it_was_and_a_spot_has_none():
     assert forced.error[3, 4] < 0.6 * plain.error[3, 4]
     with pytest.raises(vv.InvalidInput, match="spot: expected a beam that fills the disc evenly"):
         run(tally=asked, spot=1.0, n_events=10)[PAIR].cross_section()
+
+
+@pytest.mark.parametrize("name", ["beam_energy", "incidence", "deflection"])
+def test_a_column_of_events_that_is_no_tally_is_refused_with_what_to_do(name):
+    for tally in (name, [(name, "cm_angle")]):
+        with pytest.raises(vv.InvalidInput, match=rf"tally: '{name}' is a column of scattering_events") as caught:
+            run(tally=tally, energy_spread=0.1, n_events=10)
+        assert "numpy.histogram" in str(caught.value)

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
     from visviva.generalized._equilibria import Equilibrium
 
-    Forces = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
-    Balanced = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+    _Forces = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+    _Balanced = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 
-__all__ = ["Ground", "some_of_each"]
+__all__ = ["Ground", "GroundOnConstraints", "some_of_each"]
 
 #: So many places stand for a whole curve.
 _SOME = 12
@@ -40,6 +40,9 @@ _AWAY = 0.5
 #: Places between two that are looked at, and how much farther than these one may be from the next.
 _BETWEEN = 8
 _NO_JUMP = 2.5
+#: A curve has places this part of a size apart.
+_EXTENDED = 1e-2
+_MOST_DISTANCES = 1_000_000
 #: More arcs than these are no few curves, and are left as they are.
 _MOST_ARCS = 48
 
@@ -50,7 +53,7 @@ class Ground:
     Only the coordinates that move are looked at: nothing depends on the others.
     """
 
-    def __init__(self, forces: Forces, balanced: Balanced, moving: NDArray[np.bool_]) -> None:
+    def __init__(self, forces: _Forces, balanced: _Balanced, moving: NDArray[np.bool_]) -> None:
         self._forces, self._balanced, self._moving = forces, balanced, moving
 
     def goes_on(self, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.intp]:
@@ -169,6 +172,38 @@ class Ground:
             those = on[numbers == number]
             told[those] = _far_apart(places[those] / size)
         return told
+
+
+class GroundOnConstraints(Ground):
+    """Places of balance on constraints: `reached` gives those that Newton's method comes to from some, in any order."""
+
+    def __init__(self, reached: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None:
+        self._reached = reached
+
+    def _brought_back(self, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        ends = self._reached(places)
+        if not len(ends):
+            return places, np.zeros(len(places), dtype=bool)
+        # A batch at a time: the distances of all to all are many.
+        batches = np.array_split(places, 1 + len(places) * len(ends) // _MOST_DISTANCES)
+        nearest = [np.abs(batch[:, None] - ends).max(axis=2).argmin(axis=1) for batch in batches]
+        return ends[np.concatenate(nearest)], np.ones(len(places), dtype=bool)
+
+    def some_on(
+        self, places: NDArray[np.float64], size: NDArray[np.float64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which of places (R, n) are told, as `some`, and which of all lie on curves or surfaces."""
+        told, on = np.ones(len(places), dtype=bool), np.zeros(len(places), dtype=bool)
+        if len(places) <= _SOME:
+            return told, on
+        numbers = self.curves(places, size)
+        for number in range(int(numbers.max()) + 1):
+            those = np.flatnonzero(numbers == number)
+            # Many places next to each other are one that is not known well.
+            if len(those) > _SOME and (np.ptp(places[those] / size, axis=0) > _EXTENDED).any():
+                on[those] = True
+                told[those] = _far_apart(places[those] / size)
+        return told, on
 
 
 def some_of_each(ground: Ground, found: list[Equilibrium]) -> list[Equilibrium]:

@@ -17,7 +17,8 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
-from visviva.generalized._continua import Ground, some_of_each
+from visviva.generalized._continua import Ground, GroundOnConstraints, some_of_each
+from visviva.generalized._higher_orders import curvatures
 from visviva.generalized._level_directions import stays
 from visviva.generalized._matrices import Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, left_open, round_off, settled, units
@@ -72,8 +73,8 @@ class Equilibrium(Record):
         The momenta there, which need not be zero.
     continuum : int
         In how many directions other equilibria go on from there: 0 of one by itself, 1 on a curve of them, 2 on a
-        surface. What may be moved along coordinates that nothing depends on is not counted, nor are constraints looked
-        at.
+        surface. What may be moved along coordinates that nothing depends on is not counted. On constraints only a
+        search without `near` tells it.
 
     References
     ----------
@@ -235,7 +236,12 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     results, refused = [], []
     apart: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
     looked_at = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
-    for found in _once(reached, starts, distinguishing):
+    places = np.array(_once(reached, starts, distinguishing)).reshape(-1, n)
+    on_curves = np.zeros(len(places), dtype=bool)
+    if everywhere and not rolling:
+        told, on_curves = GroundOnConstraints(lambda at: constrained.reached(at)[0]).some_on(places, _sizes(places))
+        places, on_curves = places[told], on_curves[told]
+    for found, on_curve in zip(places, on_curves.tolist(), strict=True):
         if any(_is_one(found - other, left, distinguishing) for other, left in apart):
             continue
         try:
@@ -256,10 +262,17 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
         else:
             stable = small.stable and not balance.drifts
         momentum = constrained.free.at(position=place, velocity=np.zeros(n)).momentum
-        results.append(Equilibrium(place, stable, small.frequencies, momentum))
+        results.append(Equilibrium(place, stable, small.frequencies, momentum, _level(free) if on_curve else 0))
     if refused and not results:
         raise refused[0]
     return results
+
+
+def _level(free: tuple[NDArray[np.float64], ...]) -> int:
+    """Give how many directions are level, one at least, of what is on a curve, by M, C, K and the rounding of K."""
+    _, _, stiffness, rounding = free
+    about = curvatures(np.where(np.abs(stiffness) > rounding, stiffness, 0.0), rounding)
+    return 1 if about is None else max(1, int(np.count_nonzero(about.values == 0.0)))
 
 
 def _reached(
