@@ -280,8 +280,9 @@ class AccuracyWarning(UserWarning):
     |potential|, and by 1e4 `rtol` after steps that follow it, which close passages multiply. What energies do not
     know of is looked at, too: orbits, and charges that `boris` turns, with fewer than six steps to a turn; and of
     Runge-Kutta methods the first step and one from the end, against two of half the length, as under drag and of
-    massless bodies. The message names the figure and a step that would do. So are told a step longer than the run, and
-    a function among the events that gave NaN throughout.
+    massless bodies. The message names the figure and a step that would do. So are told a step longer than the run,
+    a function among the events that gave NaN throughout, and a foil that is thinner than atoms are apart or than the
+    way between two collisions.
 
     Examples
     --------

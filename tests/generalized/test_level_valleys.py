@@ -60,7 +60,7 @@ def test_of_a_whole_search_all_but_the_hill_are_stable(potential: Callable[[Any]
     system = by_momenta(potential, 2)
     for form in (system, system.lagrangian()):
         found = form.equilibria()
-        assert len(found) > 100
+        assert len(found) == (13 if potential is ring else 25)  # a dozen of each curve, and the hill
         assert [each.position.tolist() for each in found if not each.stable] == [[0.0, 0.0]]
 
 

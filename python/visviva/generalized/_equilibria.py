@@ -6,7 +6,7 @@ two places are one where they differ by round-off, or along a coordinate that no
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,8 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import free_matrices, linearization, linearization_of
 from visviva.generalized._constrained_motions import Constrained
+from visviva.generalized._continua import Ground, GroundOnConstraints, some_of_each
+from visviva.generalized._higher_orders import curvatures
 from visviva.generalized._level_directions import stays
 from visviva.generalized._matrices import LAST_DIGITS, Sizes, matrices, matrices_along
 from visviva.generalized._multiple_zeros import at_rest, open_about, round_off, settled, units
@@ -68,6 +70,10 @@ class Equilibrium(Record):
         Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)
         The momenta there, which need not be zero.
+    continuum : int
+        In how many directions other equilibria go on from there: 0 of one by itself, 1 on a curve of them, 2 on a
+        surface. What may be moved along coordinates that nothing depends on is not counted. On constraints only a
+        search without `near` tells it.
 
     References
     ----------
@@ -84,6 +90,7 @@ class Equilibrium(Record):
     stable: bool
     frequencies: NDArray[np.float64]
     momentum: NDArray[np.float64]
+    continuum: int = 0
 
 
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
@@ -105,6 +112,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     is_angle = angles(*matrices_along(system, turned(first)))
     found = _found(system, starts, within(first, is_angle))
     found = with_other_sizes(system, asked_at_rest(system), is_angle, found)
+    found = some_of_each(_ground(system), found)
     return sorted(found, key=lambda each: tuple(each.position))
 
 
@@ -127,6 +135,11 @@ def asked_at_rest(system: Lagrangian) -> AtRest:
     )
 
 
+def _ground(system: Lagrangian) -> Ground:
+    asked = asked_at_rest(system)
+    return Ground(asked.forces, asked.balanced, distinguishing_coordinates(system))
+
+
 def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.float64] | None) -> list[Equilibrium]:
     """Equilibria from starts (S, n) of about one size, or of those with coordinates up to most (n)."""
     n, sizes = len(system.coordinates), Sizes(system)
@@ -141,12 +154,15 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.flo
     results: list[Equilibrium] = []
     size = _sizes(np.concatenate([starts, reached]))
     without_mass, without_slopes = [], []
-    for place in _once(reached, starts, distinguishing):
+    ground, places = _ground(system), np.array(_once(reached, starts, distinguishing)).reshape(-1, n)
+    if most is not None:
+        places = places[ground.some(places, size)]
+    for place, goes_on in zip(places, ground.goes_on(places, size).tolist(), strict=True):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue
         try:
-            results.append(equilibrium_at(system, sizes, place, size))
+            results.append(replace(equilibrium_at(system, sizes, place, size), continuum=goes_on))
         except InvalidInput as refusal:
             if not all(np.isfinite(part).all() for part in matrices(system, place)):
                 without_slopes.append(refusal)
@@ -218,7 +234,12 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
     results, refused = [], []
     apart: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
     looked_at = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
-    for found in _once(reached, starts, distinguishing):
+    places = np.array(_once(reached, starts, distinguishing)).reshape(-1, n)
+    on_curves = np.zeros(len(places), dtype=bool)
+    if everywhere and not rolling:
+        told, on_curves = GroundOnConstraints(lambda at: constrained.reached(at)[0]).some_on(places, _sizes(places))
+        places, on_curves = places[told], on_curves[told]
+    for found, on_curve in zip(places, on_curves.tolist(), strict=True):
         if any(_is_one(found - other, left, distinguishing) for other, left in apart):
             continue
         try:
@@ -239,10 +260,17 @@ def _of_constrained(system: Lagrangian, starts: NDArray[np.float64], *, everywhe
         else:
             stable = small.stable and not balance.drifts
         momentum = constrained.free.at(position=place, velocity=np.zeros(n)).momentum
-        results.append(Equilibrium(place, stable, small.frequencies, momentum))
+        results.append(Equilibrium(place, stable, small.frequencies, momentum, _level(free) if on_curve else 0))
     if refused and not results:
         raise refused[0]
     return results
+
+
+def _level(free: tuple[NDArray[np.float64], ...]) -> int:
+    """Give how many directions are level, one at least, of what is on a curve, by M, C, K and the rounding of K."""
+    _, _, stiffness, rounding = free
+    about = curvatures(np.where(np.abs(stiffness) > rounding, stiffness, 0.0), rounding)
+    return 1 if about is None else max(1, int(np.count_nonzero(about.values == 0.0)))
 
 
 def _reached(

@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
+from visviva.generalized._continua import Ground, some_of_each
 from visviva.generalized._equilibria import MADE_OF_THEM, Equilibrium, asked_at_rest, equilibrium_at
 from visviva.generalized._hamiltonian_at_rest import at_zeros_of_forces, forces_at_rest, states_at_rest
 from visviva.generalized._matrices import LAST_DIGITS, Sizes
@@ -63,11 +64,15 @@ def fixed_points(system: Hamiltonian, near: ArrayLike | None) -> list[Equilibriu
     is_angle = angles(*_forces(system, moved))
     found = _found(system, np.concatenate([starts_of_a_search(2 * n), at_rest]), within(first, is_angle))
 
-    # Those of the Lagrangian, which knows forces without what momenta of rest add and take away again.
-    of = _by_velocities(system)
-    asked = _asked_by_momenta(system) if of is None else asked_at_rest(of[0])
+    asked = _asked(system, _by_velocities(system))
     found = with_other_sizes(system, asked, is_angle, found)
+    found = some_of_each(Ground(asked.forces, asked.balanced, distinguishing_coordinates(system)), found)
     return sorted(found, key=lambda each: (*each.position, *each.momentum))
+
+
+def _asked(system: Hamiltonian, of: tuple[Lagrangian, Sizes] | None) -> AtRest:
+    """Give what is asked at rest: of the Lagrangian, whose forces are without what momenta add and take away again."""
+    return _asked_by_momenta(system) if of is None else asked_at_rest(of[0])
 
 
 def _asked_by_momenta(system: Hamiltonian) -> AtRest:
@@ -132,10 +137,14 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
             )
         places = regular
     of = _by_velocities(system)
-    told = [_of_lagrangian(of, place, size[:n]) for place in places]
+    asked = _asked(system, of)
+    ground, every = Ground(asked.forces, asked.balanced, distinguishing[:n]), np.array(places).reshape(-1, 2 * n)
+    if most is not None:
+        every = every[ground.some(every[:, :n], size[:n])]
+    told = [_of_lagrangian(of, place, size[:n]) for place in every]
     return [
-        equilibrium_by_momenta(system, energy, place, scales) if each is None else each
-        for each, place in zip(told, places, strict=True)
+        replace(equilibrium_by_momenta(system, energy, place, scales) if each is None else each, continuum=goes_on)
+        for each, place, goes_on in zip(told, every, ground.goes_on(every[:, :n], size[:n]).tolist(), strict=True)
     ]
 
 

@@ -159,7 +159,7 @@ class Hamiltonian(GeneralizedSystem, SmallMotions):
         """States at which neither coordinates nor momenta change, their stability and their frequencies.
 
         Each is told once: of states along a coordinate that nothing depends on, one. Of a curve of equilibria in
-        others, the states that the search comes to are told.
+        others a dozen states stand for all, and ``continuum`` says that others go on.
 
         Units: those of the system.
 

@@ -81,7 +81,7 @@ class SmallMotions:
         """Places where the system stays, their stability and their frequencies.
 
         Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
-        others, the places that the search comes to are told; if its size is not about a turn, two dozen of them.
+        others (the bottom of a Mexican hat) a dozen places stand for all, and ``continuum`` says that others go on.
         On constraints they are where reactions balance forces; with nonholonomic ones they fill surfaces, and without
         `near` one is told, next to the start.
 

@@ -198,6 +198,12 @@ class Foil(Record):
         executor : concurrent.futures.Executor or dask.distributed.Client, optional
             Who counts: as of `monte_carlo`; each range of events builds its table of angles again.
 
+        Warns
+        -----
+        AccuracyWarning
+            Of a foil that is thinner than atoms are apart, or than the way between two collisions, with the figure; not
+            of ``"single"`` collisions, nor, of the latter, beside a forced one.
+
         Returns
         -------
         FoilResult

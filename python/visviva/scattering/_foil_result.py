@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
+from visviva._accuracy import callers_inside
 from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords, one_of
 from visviva._made_by import made_by
-from visviva.errors import InvalidInput
+from visviva.errors import AccuracyWarning, InvalidInput
 from visviva.scattering._foil_tally import FoilTally, Fraction, summed
 from visviva.scattering._goes_on import GoesOn
 from visviva.scattering._of_events import Counted
@@ -106,7 +108,34 @@ class Bombardment(Record):
             "tallies": [axis for (axis,) in asked],
         }
         events = event_range(first_event, n_events, seed, MOST_IONS)
-        return counted("foil_run", request, events, threads, progress, executor, self._made, "ions")
+        result = counted("foil_run", request, events, threads, progress, executor, self._made, "ions")
+        self._warn_if_thin(result.collisions_across)
+        return result
+
+    def _warn_if_thin(self, collisions_across: float) -> None:
+        """Warn of a foil that is thinner than atoms are apart, or than the way between two collisions.
+
+        The one collision of a run of single ones is that of a thin foil; beside a forced one no others are needed.
+        """
+        if self.collisions == "single":
+            return
+        apart = self.foil.material.number_density ** (-1.0 / 3.0)
+        thickness = self.foil.thickness * 1e4
+        if thickness < apart:
+            message = (
+                f"thickness = {self.foil.thickness:g} µm is {thickness:.2g} Å, less than the {apart:.2g} Å that atoms "
+                'are apart: that is no foil of amorphous matter; for its limit per atom pass collisions="single" and '
+                "a forced_angle"
+            )
+        elif collisions_across < 1.0 and self.forced_angle is None:
+            message = (
+                f"an ion has {collisions_across:.2g} collisions on a straight way through {self.foil.thickness:g} µm: "
+                f"most are turned by nothing, as those that turn by less than minimum_angle = "
+                f"{self.foil.minimum_angle:g} are left out; try a smaller one, a thicker foil, or a forced_angle"
+            )
+        else:
+            return
+        warnings.warn(message, AccuracyWarning, stacklevel=callers_inside())
 
     def _made(self, came: tuple[Any, ...], events: tuple[tuple[int, int, int], ...]) -> FoilResult:
         done, _, units, told, sums, columns = came

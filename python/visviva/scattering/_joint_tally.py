@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva import _core
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._packages import needed
 from visviva.errors import InvalidInput
+from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import OfStrata, intervals
+from visviva.scattering._tally import CrossSection, area_of_events, measure, told
 from visviva.scattering._weights import added_strata, read_only, same, variances
 
 if TYPE_CHECKING:
@@ -121,6 +124,76 @@ class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
         (10, 10)
         """
         return variances(self.values(), self._whole_weighted(2)[self._inner], self.n_events)
+
+    @property
+    def reachable(self) -> NDArray[np.float64]:
+        """Of each bin the part whose impact parameters all lie on the disc, shape (B₁, B₂), without dimension.
+
+        A place is reached if either of its two values is: 1 of a bin of which either axis is reached whole, between 0
+        and 1 where the edge of the disc cuts both. `Tally.reachable` tells that of one quantity.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> pair = ("cm_angle", "impact_parameter")
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.Coulomb(1.0), tally={pair: (np.radians([0, 20, 180]), [0.0, 1.0, 2.0])},
+        ...     beam_energy=1.0, masses=(1.0, 1e9), b_max=2.0, n_events=1000, seed=1)
+        >>> run[pair].reachable
+        array([[1., 1.],
+               [1., 1.]])
+        """
+        first, second = self._parts(whole=False)
+        return first + second - first * second
+
+    def _parts(self, *, whole: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Of the bins along each axis the part that is reached, or the part of which a cross section is told."""
+        # One event: what is reached hangs on the beam and the edges alone.
+        single: list[list[tuple[str, Any]]] = [[axis] for axis in self._axes()]
+        beam = described(self.beam)
+        columns = _core.monte_carlo(
+            beam=beam, n_events=1, seed=0, first_event=0, tallies=single, threads=1, progress=None
+        )[4]
+        parts = [np.zeros(0) if column[4] is None else column[4][0] for column in columns]
+        if whole:
+            parts = [told(name, part, self.beam) for name, part in zip(self.name, parts, strict=True)]
+        return parts[0][:, None], parts[1][None, :]
+
+    def cross_section(self) -> CrossSection:
+        """Differential cross section of both quantities together, averaged over each bin as far as it is reachable.
+
+        As `Tally.cross_section`: a bin that the edge of the disc cuts is averaged over its reachable part, which
+        `reachable` tells, and one that is not reached is NaN. Of one energy two quantities lie on a curve: bins beside
+        it are 0, and what bins on it tell goes with their size. A bin of which either quantity is reached whole has all
+        its events, also where the other is not.
+
+        Returns
+        -------
+        CrossSection
+            (value, error): counts / n_events · π b_max², per steradian for each angle, else per unit of the quantity;
+            shape (B₁, B₂), in the units of b_max². Times the solid angles (or widths) of one axis and summed over it,
+            it is that of the other where all is reached.
+
+        Raises
+        ------
+        InvalidInput
+            For a beam with a spot, which does not fill the disc evenly.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> pair = ("cm_angle", "recoil_energy")
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), tally={pair: (vv.scattering.Bins.solid_angle(2), 2)},
+        ...     beam_energy=1.0, masses=(1.0, 1.0), b_max=1.0, n_events=100_000, seed=1)
+        >>> value, error = run[pair].cross_section()
+        >>> bool(abs(value[1, 1] - 0.5) < 4 * error[1, 1])  # R²/4 per steradian, all of it above half of the energy
+        True
+        """
+        first, second = self._parts(whole=True)
+        widths = measure(self.name[0], self.edges[0])[:, None] * measure(self.name[1], self.edges[1])[None, :]
+        scale = area_of_events(self.beam, self.n_events, widths, first + second - first * second)
+        return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.

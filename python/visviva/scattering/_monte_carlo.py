@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
 __all__ = ["monte_carlo"]
 
+#: What events are told of beside what is tallied.
+_OF_EVENTS_ALONE = ("beam_energy", "incidence", "deflection")
+
 
 @known_keywords
 def monte_carlo(
@@ -165,6 +168,13 @@ def monte_carlo(
     """
     checked_potential("potential", potential)
     asked = asked_for(tally, bins)
+    for name in (name for axes in asked for name, _ in axes):
+        if name in _OF_EVENTS_ALONE:
+            raise InvalidInput(
+                "tally",
+                f"{name!r} is a column of scattering_events and is not counted here; with the same arguments and "
+                f"n_events take numpy.histogram(scattering_events(…)[{name!r}], edges)",
+            )
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
 

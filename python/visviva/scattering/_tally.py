@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.scattering._beam import Beam
     from visviva.typing import TallyName
 
-__all__ = ["CrossSection", "Tally"]
+__all__ = ["CrossSection", "Tally", "area_of_events", "measure", "told"]
 
 _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
@@ -32,7 +32,8 @@ _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 class CrossSection(NamedTuple):
     """A cross section by bin and its standard error; NaN in a bin that the beam does not reach.
 
-    Both have shape (B,), and are in the units of b_max² per steradian for angles, else over those of the quantity.
+    Both have shape (B,), of two quantities together (B₁, B₂), and are in the units of b_max² per steradian for angles,
+    else over those of the quantity.
 
     Examples
     --------
@@ -52,6 +53,35 @@ class CrossSection(NamedTuple):
 
     def __repr__(self) -> str:
         return brief_tuple(self)
+
+
+def measure(name: str, edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of each bin the solid angle, or the width."""
+    return _core.solid_angles(edges) if name in _ANGLES else np.diff(edges)
+
+
+def told(name: str, reachable: NDArray[np.float64], beam: Beam) -> NDArray[np.float64]:
+    """Of each bin the part over which a cross section is averaged: none where events of another branch fall in."""
+    two_branches = name == "lab_angle" and beam.masses[0] > beam.masses[1]
+    return np.where(reachable == 1.0, 1.0, 0.0) if two_branches else reachable
+
+
+def area_of_events(
+    beam: Beam, n_events: int, widths: NDArray[np.float64], parts: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """What one event of each bin adds to its cross section; NaN where there is no part of the bin.
+
+    Raises
+    ------
+    InvalidInput
+        For a beam with a spot.
+    """
+    if beam.spot is not None:
+        raise InvalidInput("spot", f"expected a beam that fills the disc evenly, got a spot of {beam.spot}")
+    scale = np.full(widths.shape, np.nan)
+    known = parts > 0.0
+    scale[known] = np.pi * beam.b_max**2 / (n_events * (widths * parts)[known])
+    return scale
 
 
 @known_keywords
@@ -237,8 +267,7 @@ class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arra
         return plot_tally(self, ax, residuals)
 
     def _measure(self) -> NDArray[np.float64]:
-        """Of each bin the solid angle, or the width."""
-        return _core.solid_angles(self.edges) if self.name in _ANGLES else np.diff(self.edges)
+        return measure(self.name, self.edges)
 
     def cross_section(self) -> CrossSection:
         """Differential cross section averaged over each bin, as far as the bin is reachable.
@@ -275,13 +304,7 @@ class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arra
         >>> bool(np.isnan(value[0])), bool(abs(value[2] * 2 * np.pi - np.pi / 4) < 4 * error[2] * 2 * np.pi)
         (True, True)
         """
-        if self.beam.spot is not None:
-            raise InvalidInput("spot", f"expected a beam that fills the disc evenly, got a spot of {self.beam.spot}")
-        width = self._measure()
-        two_branches = self.name == "lab_angle" and self.beam.masses[0] > self.beam.masses[1]
-        known = self.reachable == 1.0 if two_branches else self.reachable > 0.0
-        scale = np.full(width.shape, np.nan)
-        scale[known] = np.pi * self.b_max**2 / (self.n_events * (width * self.reachable)[known])
+        scale = area_of_events(self.beam, self.n_events, self._measure(), told(self.name, self.reachable, self.beam))
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
     def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
