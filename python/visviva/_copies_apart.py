@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, cast
 
 from visviva import _core
-from visviva._alike_copies import run_copies
 from visviva._arrays import whole_number
 from visviva._executors import checked_executor, results_in_order
 from visviva._joined_copies import joined_copies
@@ -80,7 +79,7 @@ def sendable(events: Sequence[dict[str, Any]], of_python: Callable[[dict[str, An
 def run_part(copies: EnsembleScene, request: RunRequest) -> dict[str, Any]:
     """Run some of the copies: what a worker does."""
     asked = request.to_core(copies._keywords, copies._names)
-    result = run_copies(asked, threads=request.threads or 1, progress=None)
+    result = _core.run(asked, threads=request.threads or 1, progress=None, ensemble=True)
     # The plan is told of the whole.
     return {name: value for name, value in result.items() if name != "plan"}
 

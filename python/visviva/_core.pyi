@@ -32,6 +32,7 @@ class _Rigid(TypedDict):
     orientation: NDArray[np.float64]
     angular_velocity: NDArray[np.float64]
     loads: list[dict[str, Any]]
+    own_loads: tuple[list[list[dict[str, Any]]], list[int]] | None
 
 class _Continuation(TypedDict):
     """How a run with fixed steps came to a scene: what it began with, and what it held at a node, block by block."""

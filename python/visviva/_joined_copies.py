@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["in_order", "joined_copies"]
+__all__ = ["joined_copies"]
 
 
 def joined_copies(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]) -> dict[str, Any]:
@@ -71,24 +68,6 @@ def _left(parts: list[dict[str, Any]]) -> dict[str, Any]:
     same = [name for name in common if len({last[name].shape[1:] for last in final}) == 1]
     kept = {name: np.concatenate([last[name] for last in final]) for name in same}
     return {"final": kept} | ({"continuation": shared} if shared is not None and "held" in kept else {})
-
-
-def in_order(result: dict[str, Any], copies: NDArray[np.intp]) -> dict[str, Any]:
-    """The result of parts of an ensemble, its row i being that of copy ``copies[i]``, with the rows in order."""
-    rows = np.argsort(copies)
-    changed: dict[str, Any] = {**result, "status": result["status"][rows]}
-    for group in ("columns", "per_trajectory", "final"):
-        changed[group] = {name: values[rows] for name, values in result[group].items()}
-    for table in ("events", "collisions"):
-        if table in result:
-            member = copies[result[table]["member"]]
-            lines = np.argsort(member, kind="stable")
-            changed[table] = {**{name: each[lines] for name, each in result[table].items()}, "member": member[lines]}
-    for name in ("energy_error", "too_long", "unresolved"):
-        if name in result:
-            copy, *rest = result[name]
-            changed[name] = (int(copies[copy]), *rest)
-    return changed
 
 
 def __dir__() -> list[str]:

@@ -28,12 +28,20 @@ def of_copies(asked: _core._Request, copies: slice | NDArray[np.intp]) -> _core.
     if asked["rigid"] is not None:
         own: Any = asked["rigid"]
         request["rigid"] = own | {name: own[name][copies] for name in _OF_RIGID_BODIES}
+        if own["own_loads"] is not None:
+            request["rigid"]["loads"], request["rigid"]["own_loads"] = _sets_of(own["own_loads"], copies)
     if asked["own_forces"] is not None:
-        sets, which = asked["own_forces"]
-        # A set that none of them has is none of theirs, and what is planned of all is planned of the first.
-        chosen = np.asarray(which)[copies]
-        used, of_copy = np.unique(chosen, return_inverse=True)
-        request["own_forces"] = ([sets[each] for each in used], of_copy.tolist()) if len(used) > 1 else None
-        request["forces"] = sets[chosen[0]]
+        request["forces"], request["own_forces"] = _sets_of(asked["own_forces"], copies)
     request["continuation"] = None
     return cast("_core._Request", request)
+
+
+def _sets_of(own: tuple[list[Any], list[int]], copies: slice | NDArray[np.intp]) -> tuple[Any, Any]:
+    """What the first of some copies has, and what each has if they differ.
+
+    A set that none of them has is none of theirs, and what is planned of all is planned of the first.
+    """
+    sets, which = own
+    chosen = np.asarray(which)[copies]
+    used, of_copy = np.unique(chosen, return_inverse=True)
+    return sets[chosen[0]], ([sets[each] for each in used], of_copy.tolist()) if len(used) > 1 else None

@@ -12,7 +12,6 @@ import numpy as np
 
 from visviva import _core
 from visviva._accuracy import warn_if_unresolved
-from visviva._alike_copies import run_copies
 from visviva._arrays import whole_number
 from visviva._parquet import GROUP_BYTES, groups, write
 from visviva._paths import path_text
@@ -65,7 +64,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
                     report(first + number * done // max(total, 1), len(copies))
 
             own = request.to_core(part._keywords, part._names)
-            result = run_copies(own, threads=threads, progress=None if report is None else told)
+            result = _core.run(own, threads=threads, progress=None if report is None else told, ensemble=True)
             ended = result["status"]
             # The one error of a whole ensemble; it is told of a part, too, that came to its end.
             if result["error"] is not None or (ended == Status.INTERRUPTED).any():

@@ -73,6 +73,7 @@ def described(rigid: RigidBodies, loads: Sequence[BodyForce]) -> _core._Rigid:
         "orientation": rigid.orientation[None],
         "angular_velocity": rigid.angular_velocity[None],
         "loads": [load._core_arguments() for load in loads],
+        "own_loads": None,
     }
 
 

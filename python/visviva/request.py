@@ -326,8 +326,6 @@ def execute(
     asked = request.to_core(prepared, names)
     threads = None if request.threads is None else whole_number("threads", request.threads)
     run: Callable[..., dict[str, Any]] = partial(_core.run, ensemble=ensemble)
-    if ensemble and asked["rigid"] is not None:
-        from visviva._alike_copies import run_copies as run
     if request.progress is False:
         result = run(asked, threads=threads, progress=None)
     else:

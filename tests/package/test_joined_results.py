@@ -5,60 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from visviva._joined_copies import in_order, joined_copies
-
-#: Of each row the copy that it is of, as parts of unlike copies come home.
-COPIES = np.array([2, 0, 3, 1])
-
-
-def result_of(copies: np.ndarray) -> dict[str, Any]:
-    """A result whose every number tells the copy it is of; lines of tables as they come, those of a copy in time."""
-    rows = np.array([3, 0, 3, 1, 0, 2, 0])
-    t = np.arange(len(rows)) + 0.5
-    return {
-        "status": copies.astype(np.int8),
-        "columns": {"energy": copies + 0.25, "position": np.stack([copies, -copies], axis=1)},
-        "per_trajectory": {"steps": 10 * copies},
-        "final": {"t": 100.0 * copies},
-        "events": {"member": rows, "t": t, "of": copies[rows]},
-        "collisions": {"member": rows[::2], "t": t[::2], "of": copies[rows[::2]]},
-        "energy_error": (1, 0.5, 0.1, 4),
-        "too_long": (2, 3.0, 0.2),
-        "unresolved": (3, 1e-3, 0.3),
-        "plan": "of all",
-    }
-
-
-def test_rows_are_put_in_the_order_of_the_copies() -> None:
-    result = result_of(COPIES)
-    there = in_order(result, COPIES)
-    expected = result_of(np.arange(4))
-    assert there["status"].tolist() == [0, 1, 2, 3]
-    for group in ("columns", "per_trajectory", "final"):
-        assert list(there[group]) == list(result[group])
-        for name, values in there[group].items():
-            assert np.array_equal(values, expected[group][name]), name
-    # The untouched, and what came is as it was.
-    assert there["plan"] == "of all"
-    assert result["status"].tolist() == COPIES.tolist()
-
-
-@pytest.mark.parametrize("table", ["events", "collisions"])
-def test_lines_of_tables_stay_with_their_copies_and_in_time(table: str) -> None:
-    there = in_order(result_of(COPIES), COPIES)[table]
-    assert there["member"].tolist() == there["of"].tolist() == sorted(there["of"])
-    for copy in range(4):
-        assert (np.diff(there["t"][there["member"] == copy]) > 0).all()
-    assert sorted(there["t"]) == sorted(result_of(COPIES)[table]["t"])
-
-
-def test_what_is_told_of_one_copy_is_told_under_its_own_number() -> None:
-    there = in_order(result_of(COPIES), COPIES)
-    assert there["energy_error"] == (0, 0.5, 0.1, 4)
-    assert there["too_long"] == (3, 3.0, 0.2)
-    assert there["unresolved"] == (1, 1e-3, 0.3)
-    silent = {name: value for name, value in result_of(COPIES).items() if name not in ("energy_error", "too_long")}
-    assert {"energy_error", "too_long"}.isdisjoint(in_order(silent, COPIES))
+from visviva._joined_copies import joined_copies
 
 
 def part(copies: int, **more: Any) -> dict[str, Any]:

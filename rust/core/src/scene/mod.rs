@@ -171,7 +171,7 @@ impl Scene {
                     places,
                 )
             };
-            if let Some(load) = bodies.loads.iter().find(coincide) {
+            if let Some(load) = bodies.loads_of(copy).iter().find(coincide) {
                 let message = format!(
                     "ends of {} are at one place, from where it has no direction: move one",
                     load.name()

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
-use visviva_core::rigid::motion::bodies::RigidBodies;
+use visviva_core::rigid::motion::bodies::{OwnLoads, RigidBodies};
 use visviva_core::rigid::motion::conserved::Scenery;
 use visviva_core::rigid::motion::loads::{End, Load, TorqueFunction};
 
@@ -24,6 +24,7 @@ pub(crate) struct Described<'py> {
     orientation: Array<'py>,
     angular_velocity: Array<'py>,
     loads: Bound<'py, PyList>,
+    own_loads: Option<(Vec<Bound<'py, PyList>>, Vec<usize>)>,
 }
 
 impl Described<'_> {
@@ -44,11 +45,16 @@ impl Described<'_> {
             pivoted: self.pivoted.repeat(copies),
             orientation: quaternions(copied("orientation", &self.orientation, four)?.0),
             angular_velocity: points(&copied("angular_velocity", &self.angular_velocity, three)?.0),
-            loads: self
-                .loads
-                .iter()
-                .map(|load| described(load.cast::<PyDict>()?))
-                .collect::<PyResult<_>>()?,
+            loads: loads(&self.loads)?,
+            own_loads: self
+                .own_loads
+                .map(|(sets, of_copy)| {
+                    Ok::<_, PyErr>(OwnLoads {
+                        sets: sets.iter().map(loads).collect::<PyResult<_>>()?,
+                        of_copy,
+                    })
+                })
+                .transpose()?,
         })
     }
 }
@@ -94,6 +100,11 @@ impl Turning {
         }
         .share(column)
     }
+}
+
+/// All loads of a copy.
+fn loads(described_loads: &Bound<'_, PyList>) -> PyResult<Vec<Load>> {
+    described_loads.iter().map(|load| described(load.cast::<PyDict>()?)).collect()
 }
 
 /// A load by its kind and values.

@@ -131,26 +131,36 @@ impl Loads {
         // Numbers of the scene's rigid bodies that these systems have, in their order.
         let own: Vec<usize> =
             members.iter().filter(|&&member| member >= rigid).map(|&member| member - rigid).collect();
-        let unit = |dimension| move |value: f64| units.take(value, dimension);
-        for load in &bodies.loads {
-            for (place, &number) in own.iter().enumerate() {
-                if !load.acts_on(number) {
+        // What copies have of their own differs in nothing but numbers.
+        let of_system = |of: &[Start], index: usize| {
+            let copy = of.first().map_or(0, |start| start.at / bodies.count);
+            &bodies.loads_of(copy)[index]
+        };
+        for (index, load) in bodies.loads.iter().enumerate() {
+            let number = |value: &dyn Fn(&Load) -> f64, dimension: [i32; 3]| {
+                let own = |system: usize| value(of_system(&starts[system], index));
+                lane_by_lane(starts.len(), |system| units.take(own(system), dimension))
+            };
+            for (place, &member) in own.iter().enumerate() {
+                if !load.acts_on(member) {
                     continue;
                 }
                 let body = systems.first + place;
-                let principal = |v: [f64; 3]| vector(starts, |of| along(bodies, &of[place], v));
                 match load {
-                    Load::Torque { torque, in_body, .. } => {
-                        let torque = torque.map(unit([2, 1, -2]));
+                    Load::Torque { in_body, .. } => {
+                        let torque = vector(starts, |of| {
+                            let Load::Torque { torque, .. } = of_system(of, index) else { return [0.0; 3] };
+                            let torque = torque.map(|part| units.take(part, [2, 1, -2]));
+                            if *in_body { along(bodies, &of[place], torque) } else { torque }
+                        });
                         self.acting.push(if *in_body {
-                            Acting::InBody(body, principal(torque))
+                            Acting::InBody(body, torque)
                         } else {
-                            Acting::InSpace(body, torque.map(Lanes::splat))
+                            Acting::InSpace(body, torque)
                         });
                     }
-                    Load::Drag { coefficient, .. } => {
-                        let coefficient = units.take(*coefficient, [2, 1, -1]);
-                        self.acting.push(Acting::Drag(body, Lanes::splat(coefficient)));
+                    Load::Drag { .. } => {
+                        self.acting.push(Acting::Drag(body, number(&Load::coefficient, [2, 1, -1])));
                     }
                     Load::Function { function, .. } => self.functions.push(Function {
                         body,
@@ -163,21 +173,26 @@ impl Loads {
                         }),
                         t0: systems.t0,
                     }),
-                    Load::Spring { ends, stiffness, length, damping } => {
+                    Load::Spring { ends, .. } => {
                         // Once, by its first end that is a body of these.
                         let first = ends.iter().find_map(|end| match end {
                             End::Body(body, _) => Some(*body),
                             _ => None,
                         });
-                        if first != Some(number) {
+                        if first != Some(member) {
                             continue;
                         }
-                        let ends = ends.map(|end| match end {
-                            End::Body(number, point) => {
+                        let point = |of: &[Start], which: usize| match of_system(of, index) {
+                            Load::Spring { ends, .. } => {
+                                ends[which].point().map(|part| units.take(part, [1, 0, 0]))
+                            }
+                            _ => [0.0; 3],
+                        };
+                        let ends = [0, 1].map(|which| match ends[which] {
+                            End::Body(number, _) => {
                                 let place = own.iter().position(|&own| own == number).unwrap_or(0);
-                                let point = point.map(unit([1, 0, 0]));
-                                let point = vector(starts, |of| along(bodies, &of[place], point));
-                                LaneEnd::Body(systems.first + place, point)
+                                let along = |of: &[Start]| along(bodies, &of[place], point(of, which));
+                                LaneEnd::Body(systems.first + place, vector(starts, along))
                             }
                             End::Particle(index) => {
                                 let slot = members.iter().position(|&member| member == index).unwrap_or(0);
@@ -186,16 +201,14 @@ impl Loads {
                                 });
                                 LaneEnd::Point(systems.row + slot, inverse)
                             }
-                            End::Anchor(point) => {
-                                LaneEnd::Anchor(point.map(|x| Lanes::splat(units.take(x, [1, 0, 0]))))
-                            }
+                            End::Anchor(_) => LaneEnd::Anchor(vector(starts, |of| point(of, which))),
                         });
+                        let damping = number(&Load::damping, [0, 1, -1]);
                         self.acting.push(Acting::Spring {
                             ends,
-                            stiffness: Lanes::splat(units.take(*stiffness, [0, 1, -2])),
-                            length: Lanes::splat(units.take(*length, [1, 0, 0])),
-                            damping: (*damping != 0.0)
-                                .then(|| Lanes::splat(units.take(*damping, [0, 1, -1]))),
+                            stiffness: number(&Load::stiffness, [0, 1, -2]),
+                            length: number(&Load::length, [1, 0, 0]),
+                            damping: damping.0.iter().any(|of| *of != 0.0).then_some(damping),
                         });
                     }
                 }

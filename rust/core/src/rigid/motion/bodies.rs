@@ -38,8 +38,19 @@ pub struct RigidBodies {
     pub orientation: Vec<Quaternion>,
     /// Along the caller's axes.
     pub angular_velocity: Vec<[f64; 3]>,
-    /// What pulls at points of the bodies, or turns them.
+    /// What pulls at points of the bodies, or turns them: of the first copy, and of all that have none of their own.
     pub loads: Vec<Load>,
+    /// The same of copies that have their own, which differ in nothing but numbers.
+    pub own_loads: Option<OwnLoads>,
+}
+
+/// Loads that copies have of their own.
+#[derive(Clone, Debug)]
+pub struct OwnLoads {
+    /// Different sets of them.
+    pub sets: Vec<Vec<Load>>,
+    /// Which of these each copy has.
+    pub of_copy: Vec<usize>,
 }
 
 impl RigidBodies {
@@ -57,8 +68,22 @@ impl RigidBodies {
             pivoted: pick(&self.pivoted, self.count, members),
             orientation: pick(&self.orientation, self.count, members),
             angular_velocity: pick(&self.angular_velocity, self.count, members),
-            loads: self.loads.clone(),
+            loads: self.loads_of(members.first().copied().unwrap_or(0)).to_vec(),
+            own_loads: self.own_loads.as_ref().map(|own| OwnLoads {
+                sets: own.sets.clone(),
+                of_copy: members.iter().map(|&copy| own.of_copy[copy]).collect(),
+            }),
         }
+    }
+
+    /// The loads of a copy.
+    pub fn loads_of(&self, copy: usize) -> &[Load] {
+        self.own_loads.as_ref().map_or(&self.loads, |own| &own.sets[own.of_copy[copy]])
+    }
+
+    /// The loads of all copies.
+    pub fn all_loads(&self) -> impl Iterator<Item = &Load> {
+        self.loads.iter().chain(self.own_loads.iter().flat_map(|own| own.sets.iter().flatten()))
     }
 
     /// The same bodies, turned so and with these angular velocities.
@@ -128,7 +153,19 @@ impl RigidBodies {
                 }
             }
         }
-        self.loads.iter().try_for_each(|load| load.validate(self.count, particles))
+        if let Some(OwnLoads { sets, of_copy }) = &self.own_loads {
+            let alike = |set: &Vec<Load>| {
+                set.len() == self.loads.len()
+                    && set.iter().zip(&self.loads).all(|(own, load)| own.name() == load.name())
+            };
+            if of_copy.len() != copies
+                || of_copy.iter().any(|&set| set >= sets.len())
+                || !sets.iter().all(alike)
+            {
+                return Err(Error::Internal("loads of copies differ in kind".to_owned()));
+            }
+        }
+        self.all_loads().try_for_each(|load| load.validate(self.count, particles))
     }
 
     /// Whether a body of each copy is held, or has a load.

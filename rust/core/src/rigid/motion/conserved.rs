@@ -87,7 +87,7 @@ impl Scenery<'_> {
         let particles = mass.len();
         let rigid = particles - bodies.count;
         let mut sum = 0.0;
-        for load in &bodies.loads {
+        for load in bodies.loads_of(self.copy) {
             let Load::Spring { ends, stiffness, length, .. } = load else { continue };
             let [one, other] = ends.map(|end| match end {
                 End::Anchor(point) => point,

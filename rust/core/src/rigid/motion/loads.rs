@@ -58,6 +58,38 @@ pub enum Load {
     },
 }
 
+impl End {
+    /// The point in it: of a body along its axes, of an anchor in space.
+    pub const fn point(&self) -> [f64; 3] {
+        match self {
+            Self::Body(_, point) | Self::Anchor(point) => *point,
+            Self::Particle(_) => [0.0; 3],
+        }
+    }
+}
+
+/// Numbers of loads, 0 of those that have none like that.
+macro_rules! numbers {
+    ($($kind:ident: $name:ident, $what:literal;)+) => {
+        impl Load {$(
+            #[doc = $what]
+            pub const fn $name(&self) -> f64 {
+                match self {
+                    Self::$kind { $name, .. } => *$name,
+                    _ => 0.0,
+                }
+            }
+        )+}
+    };
+}
+
+numbers! {
+    Drag: coefficient, "The torque over the angular velocity.";
+    Spring: stiffness, "Force by length.";
+    Spring: length, "The length without force.";
+    Spring: damping, "Force by speed.";
+}
+
 impl Debug for Load {
     fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
         f.write_str(self.name())

@@ -63,7 +63,7 @@ pub const fn steps_bodies(method: &Method) -> bool {
 
 /// What looks at velocities in a scene of rigid bodies, by name.
 fn looking(bodies: &RigidBodies, forces: &[Arc<dyn ForceTerm>]) -> Option<&'static str> {
-    let load = bodies.loads.iter().find(|load| load.needs_velocity()).map(Load::name);
+    let load = bodies.all_loads().find(|load| load.needs_velocity()).map(Load::name);
     load.or_else(|| {
         forces.iter().find(|force| force.needs().velocities()).map(|force| force.declaration().class_name)
     })
