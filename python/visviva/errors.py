@@ -8,7 +8,7 @@ would catch anyway. All but `Interrupted` and the one warning derive from `Error
 from __future__ import annotations
 
 from dataclasses import FrozenInstanceError
-from typing import TYPE_CHECKING, Never, TypeAlias
+from typing import TYPE_CHECKING, Any, Never, TypeAlias
 
 if TYPE_CHECKING:
     import numpy as np
@@ -317,6 +317,16 @@ class InternalError(Error, RuntimeError):
 
     def __str__(self) -> str:
         return f"{self.message}; this is a defect of visviva, please report it with what you ran"
+
+
+def _ended_early(error: dict[str, Any], trajectory: Any) -> BaseException:
+    """What a run that ended early raises, with what was computed; `error` is as the core tells it."""
+    if error["kind"] == "close_encounter":
+        first, second = error["bodies"]
+        return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)
+    if error["kind"] == "interrupted":
+        return Interrupted(error["message"], trajectory)
+    return ConvergenceError(error["message"], error["time"], trajectory)
 
 
 def __dir__() -> list[str]:

@@ -20,7 +20,7 @@ import numpy as np
 from visviva import _core
 from visviva._accuracy import times_may_be_coarse, warn_if_unresolved
 from visviva._arrays import float_array, number, whole_number
-from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
+from visviva.errors import Interrupted, InvalidInput, _ended_early
 from visviva.status import Status
 
 if TYPE_CHECKING:
@@ -382,19 +382,10 @@ def finished(
         warn_of_coarse_times(cast("Any", made)._scene, asked)
     error = result["error"]
     if error is not None:
-        raise _exception(error, made)
+        raise _ended_early(error, made)
     if ensemble and (result["status"] == Status.INTERRUPTED).any():
         raise Interrupted("the ensemble was interrupted", cast("Any", made))
     return made
-
-
-def _exception(error: dict[str, Any], trajectory: Any) -> BaseException:
-    if error["kind"] == "close_encounter":
-        first, second = error["bodies"]
-        return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)
-    if error["kind"] == "interrupted":
-        return Interrupted(error["message"], trajectory)
-    return ConvergenceError(error["message"], error["time"], trajectory)
 
 
 def __dir__() -> list[str]:

@@ -196,8 +196,18 @@ def test_stopped_by_the_keyboard() -> None:
     def stop(done: float, total: float) -> None:
         raise KeyboardInterrupt
 
-    with pytest.raises(vv.Interrupted, match="of 11 copies"):
-        copies_of("heavy top", symmetries=True).run(t=1.0, progress=stop)
+    # Copies that take a second each, but for one that is done at once.
+    copies = copies_of("heavy top", symmetries=True)
+    with pytest.raises(vv.Interrupted) as stopped:
+        copies.run(t=[0.0, 1.0, 1e6], progress=stop)
+    kept = stopped.value.trajectory
+    assert isinstance(kept, vv.EnsembleTrajectory)
+    assert (kept.status == vv.Status.INTERRUPTED).any()
+    # Those of the parts that had begun have come to their second row.
+    begun = np.isfinite(kept.position[:, 1, 0, 0])
+    assert begun.any()
+    alone = [copies[copy].run(t=[0.0, 1.0]).position[1] for copy in np.flatnonzero(begun)]
+    np.testing.assert_allclose(kept.position[begun, 1], alone, rtol=0.0, atol=1e-9)
 
 
 ONE = np.ones((2, 1, 3))

@@ -170,4 +170,5 @@ pub static CLOSED_FORMS: &[&ClosedForm] = &[
     &closed_forms::rotating_frame::FORM,
     &closed_forms::oscillation::FORM,
     &closed_forms::quadratic_drag::FORM,
+    &closed_forms::linear_forces::FORM,
 ];

@@ -7,13 +7,15 @@
 //! Errors, beside half a unit in the last place of what is given: straight lines, parabolas and linear drag 1e-27 of the
 //! largest term of their sums; gyration and rotation 1e-27 times (1 + angle in radians) of it; oscillations 1e-26 times
 //! (1 + largest angle, number of decays and of drives' radians since time 0) of it; motion along a line with quadratic drag
-//! 1e-25 times (1 + number of decays) of it; Kepler orbits a few units in the last place times the conditioning
+//! 1e-25 times (1 + number of decays) of it; linear flows 1e-30 times (1 + time over the shortest of periods and decays) of it;
+//! Kepler orbits a few units in the last place times the conditioning
 //! ([`kepler`](crate::nbody::kepler)). What is beyond the range of `f64` is infinite.
 
 pub mod crossed_fields;
 pub mod fixed_center;
 pub mod free;
 pub mod linear_drag;
+pub mod linear_forces;
 pub mod one_massive;
 pub mod oscillation;
 mod parabola;

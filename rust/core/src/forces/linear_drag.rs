@@ -66,6 +66,9 @@ impl ForceTerm for LinearDrag {
     fn has_series(&self) -> bool {
         true
     }
+    fn is_linear(&self) -> bool {
+        true
+    }
     fn potential_and_virial(
         &self,
         _: &PreciseBodies,

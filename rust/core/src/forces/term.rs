@@ -305,6 +305,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn is_formula(&self) -> bool {
         false
     }
+    /// Whether its acceleration of a body is linear in the place and the velocity of that body alone, but for a constant.
+    fn is_linear(&self) -> bool {
+        false
+    }
     /// Whether a Taylor series tells all of such a formula, wherever it is made.
     fn is_entire(&self) -> bool {
         false

@@ -58,6 +58,9 @@ impl ForceTerm for Uniform {
     fn has_series(&self) -> bool {
         true
     }
+    fn is_linear(&self) -> bool {
+        true
+    }
     fn potential_and_virial(
         &self,
         bodies: &PreciseBodies,

@@ -55,9 +55,14 @@ impl MatrixExponential {
 
     /// exp(A t) y for t ≥ 0, the time as a sum of two; no numbers if it is so long that no digit would be left.
     pub fn apply(&mut self, t: (f64, f64), y: &[f64]) -> Vec<f64> {
+        self.unrounded(t, y).iter().map(|value| value.to_f64()).collect()
+    }
+
+    /// The same in double-double.
+    pub fn unrounded(&mut self, t: (f64, f64), y: &[f64]) -> Vec<DoubleDouble> {
         let units = DoubleDouble::new(t.0 / self.unit_of_time, t.1 / self.unit_of_time);
         if units.to_f64() > MOST_UNITS || units.to_f64().is_nan() {
-            return vec![f64::NAN; self.n];
+            return vec![DoubleDouble::from(f64::NAN); self.n];
         }
         let mut whole = units.high().floor();
         let mut rest = units - DoubleDouble::from(whole);
@@ -78,7 +83,7 @@ impl MatrixExponential {
             }
             (left, power) = (left >> 1, power + 1);
         }
-        value.iter().zip(&self.units).map(|(value, unit)| value.to_f64() * unit).collect()
+        value.iter().zip(&self.units).map(|(value, &unit)| value.scale(unit)).collect()
     }
 
     /// The next power.

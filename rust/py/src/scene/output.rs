@@ -236,7 +236,11 @@ pub(super) fn status(ending: &Ending) -> i8 {
     match ending {
         Ending::Finished => 0,
         Ending::CloseEncounter { .. } => 1,
-        Ending::NoStep | Ending::NotFinite | Ending::Sticking { .. } | Ending::Endless => 2,
+        Ending::NoStep
+        | Ending::NotFinite
+        | Ending::Undefined { .. }
+        | Ending::Sticking { .. }
+        | Ending::Endless => 2,
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
@@ -258,6 +262,13 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
                       give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
                       them, or set max_step); under a time transformation, that dt is too long"
                 .to_owned(),
+            time,
+        }),
+        Ending::Undefined { body } => Some(Error::Convergence {
+            message: format!(
+                "a formula has no number for the force on body {body} where it is: it is a root or a logarithm of what is \
+                 negative there, or 0/0, or beyond float64 (start elsewhere, end the run before it, or write what holds there)"
+            ),
             time,
         }),
         Ending::Sticking { body } => Some(Error::Convergence {

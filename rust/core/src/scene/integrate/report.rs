@@ -26,6 +26,11 @@ pub enum Ending {
         /// Whose.
         body: usize,
     },
+    /// A formula has no number where a body is.
+    Undefined {
+        /// Which.
+        body: usize,
+    },
     /// The state became infinite or undefined.
     NotFinite,
     /// Bodies came to a distance, or to a speed, at which a force on them is not known.

@@ -66,8 +66,7 @@ impl Plan {
                 let why =
                     "the motion has a closed form; events are looked for on steps, which are to be as exact";
                 row("relative tolerance", format!("at most {AS_KNOWN:e}"), why.to_owned());
-            }
-            if let Some(rtol) = self.held_to {
+            } else if let Some(rtol) = self.held_to {
                 let why = "errors of single steps add up over many turns; name the method for steps held to rtol itself";
                 row("relative tolerance", format!("{rtol:e}"), why.to_owned());
             }

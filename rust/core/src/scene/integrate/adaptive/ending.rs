@@ -21,6 +21,7 @@ impl<'a> Run<'a> {
     pub(super) fn settle(&mut self, lane: usize, outcome: &Settled<Lanes>, ticker: &mut Ticker<'_>) {
         let (end, elapsed) = (self.end(), self.elapsed(lane));
         let sticks = self.sticks(lane, ticker);
+        let undefined = if outcome.stuck.lane(lane) { self.undefined(lane, ticker) } else { None };
         let Some(slot) = self.slots[lane].as_mut() else { return };
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
         // taken when it is kept.
@@ -49,6 +50,8 @@ impl<'a> Run<'a> {
         } else if outcome.finished.lane(lane) {
             self.part.arrived = self.part.arrived.or(self.layout.mask(lane));
             return;
+        } else if let Some(body) = undefined {
+            Ending::Undefined { body }
         } else if outcome.stuck.lane(lane) {
             let massive = match &mut self.forces {
                 Forces::Along(guided) => guided.places(self.clock.elapsed.0[lane], lane),

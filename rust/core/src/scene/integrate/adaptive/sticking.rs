@@ -1,9 +1,10 @@
-//! Velocities that stick at zero where a force leaps, as dry friction's does: steps hardly advance there, and without end.
+//! Velocities that stick at zero where a force leaps, as dry friction's does: steps hardly advance there, and without end. And
+//! places where a formula has no number, from which there is no step.
 //!
 //! The one idea: what creeps is asked for the accelerations on both sides of the leap. If both point back to it (A. F. Filippov,
 //! *Differential Equations with Discontinuous Righthand Sides*, section 4), no step gets past it.
 
-use super::Run;
+use super::{Forces, Run};
 use crate::parallel::Ticker;
 
 /// Tries of a step that are looked at together, …
@@ -62,5 +63,19 @@ impl Run<'_> {
             }
         }
         None
+    }
+
+    /// The body of the unit in a lane of whose acceleration a formula makes no number.
+    pub(super) fn undefined(&mut self, lane: usize, ticker: &mut Ticker<'_>) -> Option<usize> {
+        let unit = &self.slots[lane].as_ref()?.unit;
+        let formula = self.job.plan.forces_of(unit.unit.copy).iter().any(|force| force.is_formula());
+        if !formula || matches!(self.forces, Forces::Turning(_)) {
+            return None;
+        }
+        let mut accelerations = self.state.v().to_vec();
+        let (t, q, v) = (&self.clock.elapsed, self.state.q(), self.state.v());
+        self.forces.system().acceleration(t, q, v, &mut accelerations, ticker).ok()?;
+        let undefined = |at: &usize| unit.pick(*at, &accelerations, lane).iter().any(|part| part.is_nan());
+        (0..unit.unit.bodies.len()).find(undefined).map(|at| unit.unit.bodies[at])
     }
 }

@@ -1,0 +1,146 @@
+//! Any mixture of forces that are linear in the place and the velocity of each particle, but for a constant: harmonic ones,
+//! uniform, electric and magnetic fields, linear drag, rotating frames.
+//!
+//! The one idea: the place, the velocity and a 1 after them are a vector y with y′ = M y, which [`MatrixExponential`] moves.
+//! Source: V. I. Arnold, *Ordinary Differential Equations*, chapter 3.
+
+use super::{ClosedForm, ExactState, Member, Path, Paths};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::matrix_exponential::MatrixExponential;
+use crate::numerics::real::Real;
+use crate::numerics::scaled::Scaled;
+use core::cell::RefCell;
+
+/// Linear flows.
+pub static FORM: ClosedForm = ClosedForm {
+    name: "linear flow",
+    reason: "all forces are linear in the place and the velocity of each body, but for a constant",
+    applies: |member| {
+        !member.forces.is_empty()
+            && member.forces.iter().all(|force| force.is_linear())
+            && (0..member.mass.len()).all(|particle| in_range(member, particle))
+    },
+    motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Flow::new(member, i))),
+};
+
+/// The place, the velocity, and a 1.
+const NUMBERS: usize = 7;
+/// The largest exponent of a rate, or of a number of a state: units of numbers and of time are made of them.
+const LARGEST: i32 = 300;
+
+/// An acceleration by the numbers of a state.
+type Rows = [[Scaled; NUMBERS]; 3];
+
+/// What each component of the acceleration of a particle is made of.
+fn acceleration(member: &Member<'_>, particle: usize) -> Rows {
+    let mut rows = [[Scaled::ZERO; NUMBERS]; 3];
+    let mass = Scaled::from(member.mass[particle]);
+    let mut add = |row: usize, column: usize, value: Scaled| {
+        rows[row][column] = rows[row][column].plus(value);
+    };
+    for force in &member.forces {
+        if let Some(g) = force.as_uniform() {
+            (0..3).for_each(|c| add(c, 6, Scaled::from(g[c])));
+        }
+        // A body without mass may be there, if it has no charge.
+        if let Some((field, charge)) = force.as_electric(particle).filter(|&(_, charge)| charge != 0.0) {
+            (0..3).for_each(|c| add(c, 6, Scaled::from(charge).times(field[c]).over(mass)));
+        }
+        if let Some((k, center)) = force.as_harmonic().filter(|&(k, _)| k != 0.0) {
+            let rate = Scaled::from(-k).over(mass);
+            for c in 0..3 {
+                add(c, c, rate);
+                add(c, 6, rate.times(-center[c]));
+            }
+        }
+        if let Some(tau) = force.as_linear_drag() {
+            (0..3).for_each(|c| add(c, 3 + c, Scaled::from(-1.0).over(Scaled::from(tau))));
+        }
+        if let Some(magnetic) = force.as_magnetic() {
+            let charge = magnetic.charge_of(particle);
+            if charge != 0.0 {
+                let field = magnetic.field.map(|b| Scaled::from(charge).times(b).over(mass));
+                for c in 0..3 {
+                    let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+                    add(c, 3 + next, field[last]);
+                    add(c, 3 + last, field[next].negative());
+                }
+            }
+        }
+        if let Some((omega, center)) = force.as_rotating() {
+            let omega = omega.map(Scaled::from);
+            let square = omega.iter().fold(Scaled::ZERO, |sum, part| sum.plus(part.by(*part)));
+            for c in 0..3 {
+                let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+                // −2 ω × v and ω² d − (ω·d) ω, with d from the axis.
+                add(c, 3 + next, omega[last].times(2.0));
+                add(c, 3 + last, omega[next].times(-2.0));
+                for column in 0..3 {
+                    let outward = if column == c { square } else { Scaled::ZERO };
+                    let entry = outward.minus(omega[c].by(omega[column]));
+                    add(c, column, entry);
+                    add(c, 6, entry.times(-center[column]));
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Whether all numbers are such that none made of them leaves the range.
+fn in_range(member: &Member<'_>, particle: usize) -> bool {
+    let sound = |of: Scaled| {
+        let number = of.to_double_double().to_f64();
+        of.is_zero() || (number.is_finite() && exponent_of(number).abs() <= LARGEST)
+    };
+    let numbers = member.position[particle].into_iter().chain(member.velocity[particle]);
+    acceleration(member, particle).as_flattened().iter().all(|&entry| sound(entry))
+        && numbers.map(Scaled::from).all(sound)
+}
+
+/// The binary exponent of a number; far out for one that is none, or no normal one.
+fn exponent_of(number: f64) -> i32 {
+    if number.is_normal() { crate::numerics::power_of_two::exponent(number) } else { i32::MAX }
+}
+
+struct Flow {
+    /// Forwards and backwards in time: who asks for times of one sign waits for one.
+    flows: [RefCell<Option<MatrixExponential>>; 2],
+    rates: Vec<DoubleDouble>,
+    start: [f64; NUMBERS],
+}
+
+impl Flow {
+    fn new(member: &Member<'_>, particle: usize) -> Self {
+        let mut rates = vec![DoubleDouble::zero(); NUMBERS * NUMBERS];
+        for c in 0..3 {
+            rates[c * NUMBERS + 3 + c] = DoubleDouble::one();
+        }
+        for (c, row) in acceleration(member, particle).iter().enumerate() {
+            for (column, entry) in row.iter().enumerate() {
+                rates[(3 + c) * NUMBERS + column] = entry.to_double_double();
+            }
+        }
+        let ([x, y, z], [u, v, w]) = (member.position[particle], member.velocity[particle]);
+        Self { flows: Default::default(), rates, start: [x, y, z, u, v, w, 1.0] }
+    }
+}
+
+impl Path for Flow {
+    fn state(&self, elapsed: DoubleDouble) -> ExactState {
+        let backwards = elapsed.to_f64() < 0.0;
+        let elapsed = if backwards { -elapsed } else { elapsed };
+        let mut flow = self.flows[usize::from(backwards)].borrow_mut();
+        let flow = flow.get_or_insert_with(|| {
+            let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
+            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, elapsed.to_f64())
+        });
+        let state = flow.unrounded((elapsed.high(), elapsed.low()), &self.start);
+        // Beyond the range of numbers there is no sign.
+        let number = |number: DoubleDouble| {
+            if number.is_finite() { number } else { DoubleDouble::from(f64::INFINITY) }
+        };
+        let part = |from: usize| core::array::from_fn(|c| number(state[from + c]));
+        (part(0), part(3))
+    }
+}
