@@ -374,7 +374,12 @@ def finished(
     if asked["rigid"] is not None:
         from visviva._rigid_accuracy import look
 
-        look(result, asked, cast("Any", made)._scene, threads)
+        scene = cast("Any", made)._scene
+        look(result, asked, scene, threads)
+        if not scene._turns_freely:
+            from visviva._lost_spins import warn_of_lost_spins
+
+            warn_of_lost_spins(asked, ensemble=ensemble)
     warn_if_unresolved(result, asked, ensemble=ensemble)
     if times_may_be_coarse(asked["t0"], asked["times"].item(-1) if asked["times"].size else asked["t0"]):
         from visviva._coarse_times import warn_of_coarse_times

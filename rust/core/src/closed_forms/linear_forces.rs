@@ -5,6 +5,7 @@
 //! Source: V. I. Arnold, *Ordinary Differential Equations*, chapter 3.
 
 use super::{ClosedForm, ExactState, Member, Path, Paths};
+use crate::forces::ForceTerm;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::matrix_exponential::MatrixExponential;
 use crate::numerics::real::Real;
@@ -18,6 +19,7 @@ pub static FORM: ClosedForm = ClosedForm {
     applies: |member| {
         !member.forces.is_empty()
             && member.forces.iter().all(|force| force.is_linear())
+            && !falls_along_a_slant(member)
             && (0..member.mass.len()).all(|particle| in_range(member, particle))
     },
     motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Flow::new(member, i))),
@@ -30,6 +32,16 @@ const LARGEST: i32 = 300;
 
 /// An acceleration by the numbers of a state.
 type Rows = [[Scaled; NUMBERS]; 3];
+
+/// Whether something falls freely along an axis of rotation that is no axis of coordinates: places that grow as t² there go
+/// into all components, and rounding would take some digits from velocities after a million radians.
+fn falls_along_a_slant(member: &Member<'_>) -> bool {
+    let slanted = |omega: [f64; 3]| omega.iter().filter(|&&part| part != 0.0).count() > 1;
+    let any = |of: fn(&dyn ForceTerm) -> bool| member.forces.iter().any(|&force| of(force));
+    member.forces.iter().any(|force| force.as_rotating().is_some_and(|(omega, _)| slanted(omega)))
+        && any(|force| force.as_uniform().is_some() || force.as_electric(0).is_some())
+        && !any(|force| force.as_harmonic().is_some() || force.as_linear_drag().is_some())
+}
 
 /// What each component of the acceleration of a particle is made of.
 fn acceleration(member: &Member<'_>, particle: usize) -> Rows {
@@ -107,6 +119,8 @@ struct Flow {
     /// Forwards and backwards in time: who asks for times of one sign waits for one.
     flows: [RefCell<Option<MatrixExponential>>; 2],
     rates: Vec<DoubleDouble>,
+    /// About the shortest of periods and decays.
+    time: f64,
     start: [f64; NUMBERS],
 }
 
@@ -121,8 +135,15 @@ impl Flow {
                 rates[(3 + c) * NUMBERS + column] = entry.to_double_double();
             }
         }
+        let mut fastest = 0.0_f64;
+        for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
+            let size =
+                |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
+            fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
+        }
+        let time = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
         let ([x, y, z], [u, v, w]) = (member.position[particle], member.velocity[particle]);
-        Self { flows: Default::default(), rates, start: [x, y, z, u, v, w, 1.0] }
+        Self { flows: Default::default(), rates, time, start: [x, y, z, u, v, w, 1.0] }
     }
 }
 
@@ -133,7 +154,7 @@ impl Path for Flow {
         let mut flow = self.flows[usize::from(backwards)].borrow_mut();
         let flow = flow.get_or_insert_with(|| {
             let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
-            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, elapsed.to_f64())
+            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, self.time)
         });
         let state = flow.unrounded((elapsed.high(), elapsed.low()), &self.start);
         // Beyond the range of numbers there is no sign.

@@ -28,7 +28,7 @@ pub fn two_sum<S: Real>(a: S, b: S) -> (S, S) {
 
 /// `a + b` exactly when `|a| ≥ |b|` (Dekker).
 #[inline(always)]
-fn quick_two_sum<S: Real>(a: S, b: S) -> (S, S) {
+pub(crate) fn quick_two_sum<S: Real>(a: S, b: S) -> (S, S) {
     let sum = a + b;
     (sum, b - (sum - a))
 }

@@ -7,12 +7,18 @@
 //! Sources: C. Moler & C. Van Loan, SIAM Review 45 (2003) 3, methods 3 and 1; for balancing B. N. Parlett & C. Reinsch,
 //! Numerische Mathematik 13 (1969) 293.
 
+mod columns;
+
 use super::double_double::{DoubleDouble, two_sum};
 use super::power_of_two::exponent;
 use super::real::Real;
+use columns::Columns;
 
-/// Terms of a series whose argument is at most one half: what is left out is below 2⁻¹⁰⁴ of the first.
-const TERMS: usize = 26;
+/// Of the time in which nothing turns by more than half a radian, the unit is such a part: each halving is one more power for
+/// each time, and about one term less of the series.
+const PART: f64 = 1.0 / 8.0;
+/// Terms of a series whose argument is at most a sixteenth: what is left out is below 2⁻¹⁰⁴ of the first.
+const TERMS: usize = 16;
 /// Sweeps of balancing; each halves the exponents that are left.
 const SWEEPS: usize = 64;
 /// The largest exponent of a number's unit.
@@ -24,14 +30,16 @@ const MOST_UNITS: f64 = 9.0e18;
 #[derive(Clone, Debug)]
 pub struct MatrixExponential {
     n: usize,
-    /// A u in balanced numbers, row by row.
-    step: Vec<DoubleDouble>,
+    /// A u in balanced numbers.
+    step: Columns,
     /// The units of the numbers, powers of two.
     units: Vec<f64>,
-    /// u, a power of two.
+    /// 8 u, a power of two.
     unit_of_time: f64,
     /// exp(A u 2ᵏ).
-    powers: Vec<Vec<DoubleDouble>>,
+    powers: Vec<Columns>,
+    /// 1/k of the terms.
+    inverses: Vec<DoubleDouble>,
 }
 
 impl MatrixExponential {
@@ -44,8 +52,10 @@ impl MatrixExponential {
             norm = if sum > norm { sum } else { norm };
         }
         let unit_of_time = if norm > 0.0 { power(-1 - ceiling(norm)) } else { power(ceiling(longest)) };
-        let step = matrix.into_iter().map(|entry| entry.scale(unit_of_time)).collect();
-        Self { n, step, units, unit_of_time, powers: vec![] }
+        let step: Vec<DoubleDouble> =
+            matrix.into_iter().map(|entry| entry.scale(PART * unit_of_time)).collect();
+        let inverses = (1..=TERMS).map(|k| DoubleDouble::one() / DoubleDouble::from(k as f64)).collect();
+        Self { n, step: Columns::of(&step, n), units, unit_of_time, powers: vec![], inverses }
     }
 
     /// A time in which nothing turns by more than half a radian or grows by more than its half: a power of two.
@@ -60,7 +70,8 @@ impl MatrixExponential {
 
     /// The same in double-double.
     pub fn unrounded(&mut self, t: (f64, f64), y: &[f64]) -> Vec<DoubleDouble> {
-        let units = DoubleDouble::new(t.0 / self.unit_of_time, t.1 / self.unit_of_time);
+        let unit = PART * self.unit_of_time;
+        let units = DoubleDouble::new(t.0 / unit, t.1 / unit);
         if units.to_f64() > MOST_UNITS || units.to_f64().is_nan() {
             return vec![DoubleDouble::from(f64::NAN); self.n];
         }
@@ -70,8 +81,9 @@ impl MatrixExponential {
             whole -= 1.0;
             rest += DoubleDouble::from(1.0);
         }
-        let scaled = y.iter().zip(&self.units).map(|(&y, unit)| DoubleDouble::from(y / unit)).collect();
-        let mut value = self.series(rest, scaled);
+        let scaled: Vec<_> =
+            y.iter().zip(&self.units).map(|(&y, unit)| DoubleDouble::from(y / unit)).collect();
+        let mut value = self.step.series(rest, &Columns::of(&scaled, self.n), &self.inverses);
         let mut left = whole as u64;
         let mut power = 0;
         while left > 0 {
@@ -79,62 +91,25 @@ impl MatrixExponential {
                 self.square();
             }
             if left & 1 == 1 {
-                value = product(&self.powers[power], &value, self.n, 1);
+                value = self.powers[power].times(&value);
             }
             (left, power) = (left >> 1, power + 1);
         }
-        value.iter().zip(&self.units).map(|(value, &unit)| value.scale(unit)).collect()
+        self.units.iter().enumerate().map(|(row, &unit)| value.get(row, 0).scale(unit)).collect()
     }
 
     /// The next power.
     fn square(&mut self) {
-        let n = self.n;
         let next = match self.powers.last() {
-            Some(last) => product(last, last, n, n),
+            Some(last) => last.times(last),
             None => {
-                let mut first = vec![DoubleDouble::zero(); n * n];
-                for column in 0..n {
-                    let mut one = vec![DoubleDouble::zero(); n];
-                    one[column] = DoubleDouble::one();
-                    for (row, value) in self.series(DoubleDouble::one(), one).into_iter().enumerate() {
-                        first[row * n + column] = value;
-                    }
-                }
-                first
+                let mut one = Columns::new(self.n, self.n);
+                (0..self.n).for_each(|row| one.set(row, row, DoubleDouble::one()));
+                self.step.series(DoubleDouble::one(), &one, &self.inverses)
             }
         };
         self.powers.push(next);
     }
-
-    /// exp(A u x) y by its series.
-    fn series(&self, x: DoubleDouble, y: Vec<DoubleDouble>) -> Vec<DoubleDouble> {
-        let (mut sum, mut term) = (y.clone(), y);
-        for order in 1..=TERMS {
-            let factor = x / DoubleDouble::from(order as f64);
-            term = product(&self.step, &term, self.n, 1);
-            for (term, sum) in term.iter_mut().zip(&mut sum) {
-                *term = *term * factor;
-                *sum += *term;
-            }
-        }
-        sum
-    }
-}
-
-/// A product of matrices, the second of `columns` columns.
-fn product(a: &[DoubleDouble], b: &[DoubleDouble], n: usize, columns: usize) -> Vec<DoubleDouble> {
-    let mut result = vec![DoubleDouble::zero(); n * columns];
-    for (row, into) in a.chunks_exact(n).zip(result.chunks_exact_mut(columns)) {
-        for (&entry, other) in row.iter().zip(b.chunks_exact(columns)) {
-            if entry.to_f64() == 0.0 {
-                continue;
-            }
-            for (into, &other) in into.iter_mut().zip(other) {
-                *into += entry * other;
-            }
-        }
-    }
-    result
 }
 
 /// Counts each number in a unit of its own, a power of two, in which rows and columns are of like size; those units. What

@@ -21,7 +21,7 @@ pub struct Jet<S> {
     pub q: Vec<S>,
     /// Blocks of velocities (in that unit of time), from order 0 to `order`; of a system of the first order, nothing.
     pub v: Vec<S>,
-    /// What the coordinates of order 0 leave out, then the velocities.
+    /// What the coordinates of order 0 (or all numbers of a system of the first order) leave out, then the velocities.
     pub rests: [Vec<S>; 2],
     /// The time of the expansion.
     pub t: S,
@@ -68,7 +68,9 @@ impl<S: Element> Jet<S> {
         let len = self.len;
         (self.t, self.unit) = (t, unit);
         if matches!(state.form(), Form::FirstOrder(_)) {
-            return self.q[..len].copy_from_slice(state.all().0);
+            let (numbers, rests) = state.all();
+            self.q[..len].copy_from_slice(numbers);
+            return self.rests[0].copy_from_slice(rests);
         }
         self.q[..len].copy_from_slice(state.q());
         self.rests[0].copy_from_slice(state.q_compensation());

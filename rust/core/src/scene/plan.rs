@@ -21,8 +21,9 @@ pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
 pub use turn::TooLong;
-pub(in crate::scene) use turning::with_method;
+
 pub use turning::{Turning, steps_bodies};
+pub(in crate::scene) use turning::{are_series_poor, with_method};
 
 use super::Scene;
 use super::collisions::Collisions;

@@ -21,6 +21,9 @@ use std::sync::Arc;
 /// What a rod has of its spin about itself is rounding, below this part of it.
 const ABOUT_ITSELF: f64 = 1e-12;
 
+/// Of a tolerance rounding may take so much in a step: some hundred steps add up.
+const SHARE_OF_ROUNDING: f64 = 0.1;
+
 /// The rigid bodies of a batch of copies of a scene: the last bodies of each.
 #[derive(Clone, Debug, Default)]
 pub struct RigidBodies {
@@ -171,6 +174,18 @@ impl RigidBodies {
     /// Whether a body of each copy is held, or has a load.
     pub fn is_loaded(&self) -> bool {
         !self.loads.is_empty() || self.pivoted.contains(&true)
+    }
+
+    /// Whether rounding of the angular momentum in space leaves more of a spin than a part `rtol` of it, in a body of a copy:
+    /// about the axis of least moment of a needle, or of what is held at the end of a long arm.
+    pub fn loses_spin(&self, copy: usize, rtol: f64) -> bool {
+        let moments = &self.moments[copy * self.count..(copy + 1) * self.count];
+        moments.iter().any(|moments| {
+            let largest = moments.iter().fold(0.0_f64, |most, &of| most.max(of));
+            let least =
+                moments.iter().filter(|&&of| of > 0.0).fold(f64::INFINITY, |least, &of| least.min(of));
+            largest / least * f64::EPSILON > SHARE_OF_ROUNDING * rtol
+        })
     }
 
     /// Whether some body is no sphere: gravity turns it.

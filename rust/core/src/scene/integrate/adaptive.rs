@@ -274,6 +274,9 @@ impl<'a> Run<'a> {
         let mask = self.layout.mask(lane);
         unit.write(&mut self.state, lane);
         measure::set(&mut self.norm, self.job, &unit, mask);
+        if let (Forces::Turning(bodies), Scheme::Taylor(_)) = (&self.forces, &self.job.plan.method.scheme) {
+            measure::leave_out_held(&mut self.norm, bodies);
+        }
         for block in self.norm.blocks.iter().filter(|block| !block.velocity) {
             for (start, &now) in self.part.reference.iter_mut().zip(&block.reference) {
                 *start = Lanes::select(mask, now, *start);

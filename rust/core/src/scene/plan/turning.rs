@@ -115,6 +115,25 @@ fn by_themselves(scene: &Scene, bodies: &RigidBodies, forces: &[Arc<dyn ForceTer
         && groups(scene, forces) == Groups::Single
 }
 
+/// The size of a rigid body of a copy, √(moment/mass), whose angular momentum has no square among numbers.
+fn out_of_range(scene: &Scene, bodies: &RigidBodies, copy: usize) -> Option<f64> {
+    let mass = &scene.masses(copy)[scene.particles - bodies.count..];
+    let moments = &bodies.moments[copy * bodies.count..(copy + 1) * bodies.count];
+    let sizes = moments.iter().zip(mass).flat_map(|(moments, &mass)| {
+        moments.iter().filter(|&&moment| moment > 0.0).map(move |moment| (moment / mass).sqrt())
+    });
+    sizes.into_iter().find(|size| !(1e-40..=1e40).contains(size))
+}
+
+/// Whether series are not to be chosen for a copy: where rounding takes of a spin, steps in parts are made smaller until the
+/// result agrees, and tell where it does not.
+pub(in crate::scene) fn are_series_poor(scene: &Scene, copy: usize, rtol: f64) -> bool {
+    scene
+        .rigid
+        .as_ref()
+        .is_some_and(|bodies| bodies.loses_spin(copy, rtol) || out_of_range(scene, bodies, copy).is_some())
+}
+
 /// Errors of chosen steps add up over many turns: where nobody named the method each is held to a tolerance that is so many
 /// times smaller, …
 const TIMES_CLOSER: f64 = 1e3;
@@ -139,6 +158,7 @@ pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<
     let part = if span > 0.0 { span / f64::from(PARTS) } else { 1.0 };
     let forces = super::own::acting(scene, &scene.forces);
     let velocities = looking(bodies, &forces).is_some();
+    let poor = (0..scene.copies).any(|copy| are_series_poor(scene, copy, request.rtol));
     let steered = request.max_step.is_some() || request.atol.is_some();
     let in_parts = request.events.is_empty()
         && !steered
@@ -147,7 +167,7 @@ pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<
         && !points_apart(scene, bodies, &forces);
     let (method, dt) = match request.dt {
         None if request.time_transformation.is_some() => return None,
-        None if by_themselves(scene, bodies, &forces) => (SERIES, None),
+        None if by_themselves(scene, bodies, &forces) && !poor => (SERIES, None),
         None if !in_parts => (ADAPTIVE, None),
         None => (best(velocities), Some(part)),
         given => (best(velocities), given),
@@ -199,6 +219,15 @@ pub(super) fn check(
             load.name()
         );
         return Err(Error::invalid("method", message));
+    }
+    let size = (0..scene.copies).find_map(|copy| out_of_range(scene, bodies, copy));
+    if let (Scheme::Taylor(_), Some(size)) = (&method.scheme, size) {
+        let message = format!(
+            "expected sizes √(moment/mass) of rigid bodies between 1e-40 and 1e40 for {}, got {size:.0e}: squares of angular \
+             momenta leave the range of numbers; take other units (scene.rescaled), or {ADAPTIVE}",
+            method.name
+        );
+        return Err(Error::invalid("moments", message));
     }
     let softened =
         forces.iter().any(|force| force.as_newtonian().is_some_and(|(_, softening)| softening != 0.0));

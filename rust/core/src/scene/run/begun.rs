@@ -74,7 +74,7 @@ impl Begun {
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let plan = Plan::of(scene, request, neighbors, ticker)?;
-        let Some(groups) = patterns(scene, &plan, ticker)? else {
+        let Some(groups) = patterns(scene, (&plan, request.rtol), ticker)? else {
             return Ok(Self { start: None, plan, groups: None, plans: Vec::new() });
         };
         let mut apart = Vec::with_capacity(groups.len());
@@ -113,7 +113,8 @@ fn planned_apart(
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     let plan = Plan::of(&part, asked.0, asked.1, ticker)?;
-    let Some(groups) = patterns(&part, &plan, ticker)?.filter(|groups| groups.len() > 1) else {
+    let Some(groups) = patterns(&part, (&plan, asked.0.rtol), ticker)?.filter(|groups| groups.len() > 1)
+    else {
         into.push(((members, part), plan));
         return Ok(());
     };

@@ -3,7 +3,7 @@
 
 use super::super::Scene;
 use super::super::frame::Units;
-use super::super::plan::Plan;
+use super::super::plan::{Plan, are_series_poor};
 use crate::error::Result;
 use crate::parallel::Ticker;
 use std::collections::BTreeMap;
@@ -15,17 +15,18 @@ pub(super) type Pattern = (Vec<usize>, Scene);
 type Key = ((Vec<bool>, Turning), (usize, Units, bool));
 
 /// What of rigid bodies says by which method and in which of the formulas they turn: how many pairs of moments of each agree,
-/// and whether it is a rod; of each load whether it looks at velocities, and whether it has a length.
-type Turning = (Vec<(u8, bool)>, Vec<(bool, bool)>);
+/// and whether it is a rod; of each load whether it looks at velocities, and whether it has a length; whether
+/// series are poor.
+type Turning = (Vec<(u8, bool)>, Vec<(bool, bool)>, bool);
 
 /// That of the rigid bodies of a copy.
-fn turning(scene: &Scene, copy: usize) -> Turning {
+fn turning(scene: &Scene, copy: usize, rtol: f64) -> Turning {
     let Some(bodies) = &scene.rigid else { return Turning::default() };
     let own = copy * bodies.count..(copy + 1) * bodies.count;
     let agree = |[a, b, c]: [f64; 3]| u8::from(a == b) + u8::from(b == c) + u8::from(c == a);
     let symmetry = bodies.moments[own].iter().map(|&moments| (agree(moments), moments.contains(&0.0)));
     let loads = bodies.loads_of(copy).iter().map(|load| (load.needs_velocity(), load.length() > 0.0));
-    (symmetry.collect(), loads.collect())
+    (symmetry.collect(), loads.collect(), are_series_poor(scene, copy, rtol))
 }
 
 /// Copies that have closed forms, and copies that are integrated with forces of one kind, the same set of massless bodies,
@@ -35,7 +36,11 @@ fn turning(scene: &Scene, copy: usize) -> Turning {
 ///
 /// # Errors
 /// When the caller asks to stop.
-pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<Option<Vec<Pattern>>> {
+pub(super) fn patterns(
+    scene: &Scene,
+    (plan, rtol): (&Plan, f64),
+    ticker: &mut Ticker<'_>,
+) -> Result<Option<Vec<Pattern>>> {
     if !plan.solutions.integrates() {
         return Ok(None);
     }
@@ -44,7 +49,9 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> R
     let units: Vec<Units> = (0..scene.copies).map(units).collect::<Result<_>>()?;
     let kind = |copy: usize| (plan.kinds.get(copy).copied().unwrap_or(0), units[copy], plan.knows(copy));
     let alike = |copy: usize| {
-        kind(copy) == kind(0) && massive(copy).eq(massive(0)) && turning(scene, copy) == turning(scene, 0)
+        kind(copy) == kind(0)
+            && massive(copy).eq(massive(0))
+            && turning(scene, copy, rtol) == turning(scene, 0, rtol)
     };
     if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
         return Ok(None);
@@ -52,7 +59,7 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> R
     let mut groups: BTreeMap<Option<Key>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
         let integrated = plan.solutions.of_member(copy).is_none();
-        let key = integrated.then(|| ((massive(copy).collect(), turning(scene, copy)), kind(copy)));
+        let key = integrated.then(|| ((massive(copy).collect(), turning(scene, copy, rtol)), kind(copy)));
         groups.entry(key).or_default().push(copy);
     }
     Ok(Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect()))

@@ -95,9 +95,11 @@ impl Expand for OneBody {
         let pull = self.pull(jet, points, ticker)?;
         let Self { alone: only, constants, factors, numbers, .. } = self;
         let (order, half) = (jet.order, jet.len / 2);
-        let mut start = [Lanes::zero(); HALF];
-        start[..4].copy_from_slice(&jet.q[TURNING..][..4]);
-        start[4..].copy_from_slice(&jet.q[half + TURNING..][..3]);
+        let mut start = [Lanes::zero(); 2 * HALF];
+        for (from, into) in [&jet.q, &jet.rests[0]].into_iter().zip(start.chunks_exact_mut(HALF)) {
+            into[..4].copy_from_slice(&from[TURNING..][..4]);
+            into[4..].copy_from_slice(&from[half + TURNING..][..3]);
+        }
         let unit = if *only { Lanes::splat(jet.unit.0[0]) } else { jet.unit };
         let inverse = &jet.inverse[..];
         let motion = Motion { constants, start: &start, order, unit: &unit, inverse, factors, numbers };

@@ -21,6 +21,9 @@ use crate::rigid::motion::system::BodySystem;
 /// as good as there.
 const NOTHING: f64 = 1.0 / 1_048_576.0;
 
+/// A tolerance that nothing exceeds.
+const UNBOUNDED: f64 = 1e300;
+
 /// Whether sizes are measured from the center of mass of a unit, wherever it goes: of bodies that depend on each other,
 /// where no force has a center and some force moves the whole, so that it leaves the origin.
 fn from_their_center(plan: &Plan, unit: &Prepared) -> bool {
@@ -71,8 +74,10 @@ fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) 
             }
         }
         one => {
-            let atol = one.and_then(<[f64]>::first).map_or(own, at_least);
-            block.atol[0] = Lanes::select(lanes, Lanes::splat(atol), block.atol[0]);
+            let allowed = Lanes::splat(one.and_then(<[f64]>::first).map_or(own, at_least));
+            for atol in &mut block.atol {
+                *atol = Lanes::select(lanes, allowed, *atol);
+            }
         }
     }
 }
@@ -96,6 +101,20 @@ pub(super) fn norm(shape: Shape, forces: &mut Forces, rtol: Lanes, together: boo
         }));
     }
     norm
+}
+
+/// Leaves out the centers of held bodies, which are where orientations have them: rounding of places far from the origin, and of
+/// velocities that are slow beside the spin, is no error of theirs.
+pub(super) fn leave_out_held(norm: &mut Norm<Lanes>, bodies: &BodySystem) {
+    for block in norm.blocks.iter_mut().take(2) {
+        if bodies.arrangement().held().next().is_some() {
+            let all = block.atol[0];
+            block.atol.resize(block.shape.rows, all);
+        }
+        for row in bodies.arrangement().held() {
+            block.atol[row] = Lanes::splat(UNBOUNDED);
+        }
+    }
 }
 
 /// Allows the momenta of bodies that begin a part of what they are, or come to be: by the spin that they have, by that which

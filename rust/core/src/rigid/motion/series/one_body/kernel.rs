@@ -92,7 +92,7 @@ pub(super) fn constants(of: &LaneBody, weight: [Lanes; 3], torque: [Lanes; 3], a
 /// A motion to be expanded.
 pub(super) struct Motion<'a> {
     pub(super) constants: &'a [Lanes],
-    /// The quaternion and the momentum in space.
+    /// The quaternion and the momentum in space, and what they leave out.
     pub(super) start: &'a [Lanes],
     pub(super) order: usize,
     pub(super) unit: &'a Lanes,

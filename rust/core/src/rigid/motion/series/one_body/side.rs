@@ -1,7 +1,8 @@
 //! Eight numbers of a body side by side: in one register, or in a register each with those of seven other bodies.
 
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
-use crate::rigid::motion::vectors::turned_back;
+use crate::numerics::real::Real;
+use crate::rigid::motion::vectors::{turned_back, turned_back_by_all};
 
 /// The quaternion, then the momentum along the body's axes: which of them are the left factors of the products.
 pub(super) const LEFT: [[i64; WIDTH]; 3] =
@@ -12,6 +13,18 @@ pub(super) const RIGHT: [[i64; WIDTH]; 3] =
 /// Where the momentum begins.
 pub(super) const MOMENTUM: usize = 4;
 
+/// The momentum along the axes. What a rounded quaternion lacks of length 1 would lengthen it, in many steps to one side.
+#[inline(always)]
+fn along_axes<S: Real>(of: &[S]) -> [S; 3] {
+    let (q, rest) = ([of[0], of[1], of[2], of[3]], [of[7], of[8], of[9], of[10]]);
+    let mut own = turned_back_by_all(q, rest, [of[4], of[5], of[6]]);
+    let left = turned_back(q, [of[11], of[12], of[13]]);
+    for c in 0..3 {
+        own[c] += left[c];
+    }
+    own
+}
+
 /// Eight numbers of a body.
 pub(super) trait Side<V: Vector8>: Copy {
     /// Registers of them.
@@ -20,7 +33,7 @@ pub(super) trait Side<V: Vector8>: Copy {
     const FACTORS: usize;
     /// A number of the body eight times.
     fn each(number: V) -> Self;
-    /// The quaternion and the momentum along the axes, of the quaternion and the momentum in space.
+    /// The quaternion and the momentum along the axes, of the quaternion and the momentum in space and what they leave out.
     fn begin(start: &[V]) -> Self;
     fn load(memory: &[V], row: usize) -> Self;
     fn store(self, memory: &mut [V], row: usize);
@@ -54,13 +67,12 @@ impl<V: Vector8> Side<V> for Alone<V> {
     }
     #[inline(always)]
     fn begin(start: &[V]) -> Self {
-        let mut of = [0.0; 7];
-        for number in 0..7 {
+        let mut of = [0.0; 14];
+        for number in 0..14 {
             of[number] = start[number].store().0[0];
         }
-        let [x, y, z, w, a, b, c] = of;
-        let [a, b, c] = turned_back([x, y, z, w], [a, b, c]);
-        Self(V::load(Lanes([x, y, z, w, a, b, c, 0.0])))
+        let [a, b, c] = along_axes(&of);
+        Self(V::load(Lanes([of[0], of[1], of[2], of[3], a, b, c, 0.0])))
     }
     #[inline(always)]
     fn load(memory: &[V], row: usize) -> Self {
@@ -118,9 +130,8 @@ impl<V: Vector8> Side<V> for Abreast<V> {
     }
     #[inline(always)]
     fn begin(start: &[V]) -> Self {
-        let [x, y, z, w] = [start[0], start[1], start[2], start[3]];
-        let [a, b, c] = turned_back([x, y, z, w], [start[4], start[5], start[6]]);
-        Self([x, y, z, w, a, b, c, V::zero()])
+        let [a, b, c] = along_axes(start);
+        Self([start[0], start[1], start[2], start[3], a, b, c, V::zero()])
     }
     #[inline(always)]
     fn load(memory: &[V], row: usize) -> Self {

@@ -1,0 +1,129 @@
+//! Matrices of double-doubles by columns, eight rows to a register: products, and series of exponentials.
+//!
+//! The one idea: sums wait for one addition a term. What is left out of it and of the products is added beside, and joined at
+//! the end, to 1e-31 of the sum of all terms' sizes (T. Ogita, S. M. Rump & S. Oishi, SIAM J. Sci. Comput. 26 (2005) 1955).
+
+use crate::numerics::double_double::{DoubleDouble, quick_two_sum, two_sum};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::real::Real;
+use crate::tiered;
+
+/// Eight numbers and what they leave out.
+type Eight = [Lanes; 2];
+
+/// A matrix, or a vector, which has one column.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    rows: usize,
+    /// Registers of a column.
+    each: usize,
+    numbers: Vec<Eight>,
+}
+
+impl Columns {
+    /// Zeros.
+    pub(super) fn new(rows: usize, columns: usize) -> Self {
+        let each = rows.div_ceil(WIDTH);
+        Self { rows, each, numbers: vec![[Lanes::zero(); 2]; each * columns] }
+    }
+
+    /// Of numbers, row by row.
+    pub(super) fn of(numbers: &[DoubleDouble], rows: usize) -> Self {
+        let columns = numbers.len() / rows;
+        let mut matrix = Self::new(rows, columns);
+        for (index, &number) in numbers.iter().enumerate() {
+            matrix.set(index / columns, index % columns, number);
+        }
+        matrix
+    }
+
+    pub(super) fn set(&mut self, row: usize, column: usize, number: DoubleDouble) {
+        let [high, low] = &mut self.numbers[column * self.each + row / WIDTH];
+        (high.0[row % WIDTH], low.0[row % WIDTH]) = number.parts();
+    }
+
+    pub(super) fn get(&self, row: usize, column: usize) -> DoubleDouble {
+        let [high, low] = &self.numbers[column * self.each + row / WIDTH];
+        DoubleDouble::new(high.0[row % WIDTH], low.0[row % WIDTH])
+    }
+
+    /// The product with another.
+    pub(super) fn times(&self, other: &Self) -> Self {
+        let columns = other.numbers.len() / other.each;
+        let mut product = Self::new(self.rows, columns);
+        multiply(self, other, &mut product);
+        product
+    }
+
+    /// Σ (A x)ᵏ y/k! of so many k, this being A; `inverses` are 1/k.
+    pub(super) fn series(&self, x: DoubleDouble, y: &Self, inverses: &[DoubleDouble]) -> Self {
+        let mut sum = y.clone();
+        let room = &mut [y.clone(), y.clone()];
+        sum_series(self, x, inverses, (&mut sum, room));
+        sum
+    }
+}
+
+/// a b, to twice the digits.
+#[inline(always)]
+fn product<V: Real>(a: [V; 2], b: [V; 2]) -> [V; 2] {
+    let high = a[0] * b[0];
+    let rest = a[0].multiply_add(b[0], -high);
+    [high, a[0].multiply_add(b[1], a[1].multiply_add(b[0], rest))]
+}
+
+/// A column of a product.
+#[inline(always)]
+fn column<V: Vector8>(a: &Columns, b: &[Eight], into: &mut [Eight]) {
+    for (block, into) in into.iter_mut().enumerate() {
+        let (mut sum, mut low) = (V::zero(), V::zero());
+        for j in 0..a.rows {
+            let [high, rest] = &b[j / WIDTH];
+            let factor = [V::splat(high.0[j % WIDTH]), V::splat(rest.0[j % WIDTH])];
+            let [of_high, of_low] = a.numbers[j * a.each + block];
+            let [term, left] = product([V::load(of_high), V::load(of_low)], factor);
+            let (next, lost) = two_sum(sum, term);
+            sum = next;
+            low += lost + left;
+        }
+        let (high, low) = quick_two_sum(sum, low);
+        *into = [high.store(), low.store()];
+    }
+}
+
+#[inline(always)]
+fn multiply_body<V: Vector8>(a: &Columns, b: &Columns, into: &mut Columns) {
+    for (b, into) in b.numbers.chunks_exact(b.each).zip(into.numbers.chunks_exact_mut(into.each)) {
+        column::<V>(a, b, into);
+    }
+}
+
+#[inline(always)]
+fn series_body<V: Vector8>(
+    a: &Columns,
+    x: DoubleDouble,
+    inverses: &[DoubleDouble],
+    (sum, [term, next]): (&mut Columns, &mut [Columns; 2]),
+) {
+    for &inverse in inverses {
+        let (high, low) = (x * inverse).parts();
+        let factor = [V::splat(high), V::splat(low)];
+        for at in (0..sum.numbers.len()).step_by(a.each) {
+            column::<V>(a, &term.numbers[at..at + a.each], &mut next.numbers[at..at + a.each]);
+        }
+        for (at, sum) in sum.numbers.iter_mut().enumerate() {
+            let [of_high, of_low] = next.numbers[at];
+            let [term_high, term_low] = product([V::load(of_high), V::load(of_low)], factor);
+            let (high, lost) = two_sum(V::load(sum[0]), term_high);
+            let (high, low) = quick_two_sum(high, lost + (V::load(sum[1]) + term_low));
+            *sum = [high.store(), low.store()];
+            let (high, low) = quick_two_sum(term_high, term_low);
+            term.numbers[at] = [high.store(), low.store()];
+        }
+    }
+}
+
+tiered! {
+    fn multiply[][](a: &Columns, b: &Columns, into: &mut Columns) = multiply_body;
+    fn sum_series[][](a: &Columns, x: DoubleDouble, inverses: &[DoubleDouble], into: (&mut Columns, &mut [Columns; 2])) = series_body;
+}
