@@ -1,8 +1,8 @@
 """Spins of slender bodies that rounding of an angular momentum takes from, told after a run.
 
-The one idea: where torques turn a body its state holds the angular momentum in space, to its last digit. Of a needle, or
-of what is held at the end of a long arm, the part along the axis of least moment is next to nothing of it, and the spin
-about that axis is known to no more digits than are left there.
+The one idea: where torques turn a body its state holds the angular momentum in space, to its last digit. Of a needle,
+or of what is held at the end of a long arm, the part along the axis of least moment is next to nothing of it, and the
+spin about that axis is known to no more digits than are left there.
 """
 
 from __future__ import annotations
@@ -23,9 +23,12 @@ __all__ = ["warn_of_lost_spins"]
 _STEPS = 10.0
 """So many times the rounding of one step a run of some hundred leaves."""
 
+_TOLERATED = 1e-6
+"""Less is not told, whatever was asked for: equal steps are not held to a tolerance."""
+
 
 def warn_of_lost_spins(asked: _core._Request, *, ensemble: bool) -> None:
-    """Warn of bodies whose angular velocities are known to fewer digits than ``rtol`` asks for."""
+    """Warn of bodies whose angular velocities are known to fewer digits than ``rtol`` asks for, and to fewer than six."""
     rigid = asked["rigid"]
     if rigid is None:
         return
@@ -33,7 +36,7 @@ def warn_of_lost_spins(asked: _core._Request, *, ensemble: bool) -> None:
     spread = moments.max(axis=-1) / np.where(moments > 0.0, moments, np.inf).min(axis=-1)
     lost = _STEPS * np.finfo(float).eps * spread
     copy, body = np.unravel_index(int(np.argmax(lost)), lost.shape)
-    if not lost[copy, body] > asked["rtol"]:
+    if not lost[copy, body] > max(asked["rtol"], _TOLERATED):
         return
     whose = f" of copy {copy}" if ensemble else ""
     message = (

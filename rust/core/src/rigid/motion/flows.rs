@@ -254,11 +254,12 @@ pub(super) fn twist<V: View<Lanes>>(
         twist = [torque[3 * body], torque[3 * body + 1], torque[3 * body + 2]];
     }
     if of.pivoted {
-        let (mut arm, mut pull) = (twist, twist);
+        let mut pull = twist;
         for c in 0..3 {
-            arm[c] = q[c * rows + of.row] - V::load(of.pivot[c]);
             pull[c] = V::load(of.mass) * a[c * rows + of.row];
         }
+        // Not the difference of places, which has no digits where they are far from the origin.
+        let arm = turned([q[at], q[at + 1], q[at + 2], q[at + 3]], loaded(&of.center));
         twist = times_plus(cross(arm, pull), V::one(), twist);
     }
     if of.rod {
