@@ -28,7 +28,7 @@ _TOLERATED = 1e-6
 
 
 def warn_of_lost_spins(asked: _core._Request, *, ensemble: bool) -> None:
-    """Warn of bodies whose angular velocities are known to fewer digits than ``rtol`` asks for, and to fewer than six."""
+    """Warn of bodies whose angular velocities are known to fewer digits than ``rtol`` asks for, and than six."""
     rigid = asked["rigid"]
     if rigid is None:
         return

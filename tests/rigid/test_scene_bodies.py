@@ -288,9 +288,13 @@ def rod(moment: float = 0.0, axes: np.ndarray | None = None, point: float = 0.5)
 
 def test_a_rod_is_the_limit_of_thin_bodies() -> None:
     straight = rod()
-    for moment in (1e-6, 1e-9, 1e-12):
+    for moment in (1e-6, 1e-9):
         # A thin body moves as the rod does, and its ends with it.
         np.testing.assert_allclose(rod(moment).position, straight.position, rtol=0, atol=1e-15)
+    # How the thinnest spins about itself rounding leaves open, which nothing of this hangs on.
+    with pytest.warns(vv.AccuracyWarning, match=r"the largest moment of rigid body 0 is .* times the least"):
+        thinnest = rod(1e-12)
+    np.testing.assert_allclose(thinnest.position, straight.position, rtol=0, atol=1e-15)
     leaning = rod(axes=ROD_TURN)
     np.testing.assert_allclose(leaning.position, straight.position, rtol=0, atol=1e-15)
     ends = [
