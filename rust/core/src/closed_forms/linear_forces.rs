@@ -11,6 +11,7 @@ use crate::numerics::matrix_exponential::MatrixExponential;
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use core::cell::RefCell;
+use std::rc::Rc;
 
 /// Linear flows.
 pub static FORM: ClosedForm = ClosedForm {
@@ -22,7 +23,14 @@ pub static FORM: ClosedForm = ClosedForm {
             && !falls_along_a_slant(member)
             && (0..member.mass.len()).all(|particle| in_range(member, particle))
     },
-    motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Flow::new(member, i))),
+    motion: |member, ticker| {
+        let mut last = None;
+        Paths::motion(member, ticker, |particle| {
+            let flow = Flow::new(member, particle, last.as_ref());
+            last = Some(Rc::clone(&flow.flows));
+            Ok(flow)
+        })
+    },
 };
 
 /// The place, the velocity, and a 1.
@@ -115,17 +123,47 @@ fn exponent_of(number: f64) -> i32 {
     if number.is_normal() { crate::numerics::power_of_two::exponent(number) } else { i32::MAX }
 }
 
-struct Flow {
-    /// Forwards and backwards in time: who asks for times of one sign waits for one.
-    flows: [RefCell<Option<MatrixExponential>>; 2],
+/// Rates, and what they make of states.
+struct Flows {
     rates: Vec<DoubleDouble>,
     /// About the shortest of periods and decays.
     time: f64,
+    /// Forwards and backwards in time, once somebody has asked for such a time.
+    of: [RefCell<Option<MatrixExponential>>; 2],
+}
+
+impl Flows {
+    fn new(rates: Vec<DoubleDouble>) -> Self {
+        let mut fastest = 0.0_f64;
+        for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
+            let size =
+                |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
+            fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
+        }
+        let time = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
+        Self { rates, time, of: Default::default() }
+    }
+
+    fn moved(&self, start: &[f64; NUMBERS], elapsed: DoubleDouble) -> Vec<DoubleDouble> {
+        let backwards = elapsed.to_f64() < 0.0;
+        let elapsed = if backwards { -elapsed } else { elapsed };
+        let mut flow = self.of[usize::from(backwards)].borrow_mut();
+        let flow = flow.get_or_insert_with(|| {
+            let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
+            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, self.time)
+        });
+        flow.unrounded((elapsed.high(), elapsed.low()), start)
+    }
+}
+
+/// A particle in a flow, which it shares with those before it that have the same rates.
+struct Flow {
+    flows: Rc<Flows>,
     start: [f64; NUMBERS],
 }
 
 impl Flow {
-    fn new(member: &Member<'_>, particle: usize) -> Self {
+    fn new(member: &Member<'_>, particle: usize, last: Option<&Rc<Flows>>) -> Self {
         let mut rates = vec![DoubleDouble::zero(); NUMBERS * NUMBERS];
         for c in 0..3 {
             rates[c * NUMBERS + 3 + c] = DoubleDouble::one();
@@ -135,28 +173,18 @@ impl Flow {
                 rates[(3 + c) * NUMBERS + column] = entry.to_double_double();
             }
         }
-        let mut fastest = 0.0_f64;
-        for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
-            let size =
-                |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
-            fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
-        }
-        let time = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
+        let flows = match last {
+            Some(last) if last.rates == rates => Rc::clone(last),
+            _ => Rc::new(Flows::new(rates)),
+        };
         let ([x, y, z], [u, v, w]) = (member.position[particle], member.velocity[particle]);
-        Self { flows: Default::default(), rates, time, start: [x, y, z, u, v, w, 1.0] }
+        Self { flows, start: [x, y, z, u, v, w, 1.0] }
     }
 }
 
 impl Path for Flow {
     fn state(&self, elapsed: DoubleDouble) -> ExactState {
-        let backwards = elapsed.to_f64() < 0.0;
-        let elapsed = if backwards { -elapsed } else { elapsed };
-        let mut flow = self.flows[usize::from(backwards)].borrow_mut();
-        let flow = flow.get_or_insert_with(|| {
-            let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
-            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, self.time)
-        });
-        let state = flow.unrounded((elapsed.high(), elapsed.low()), &self.start);
+        let state = self.flows.moved(&self.start, elapsed);
         // Beyond the range of numbers there is no sign.
         let number = |number: DoubleDouble| {
             if number.is_finite() { number } else { DoubleDouble::from(f64::INFINITY) }
