@@ -9,9 +9,9 @@ use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
-use visviva_core::rigid::motion::bodies::{OwnLoads, RigidBodies};
+use visviva_core::rigid::motion::bodies::RigidBodies;
 use visviva_core::rigid::motion::conserved::Scenery;
-use visviva_core::rigid::motion::loads::{End, Load, TorqueFunction};
+use visviva_core::rigid::motion::loads::{End, Load, OwnLoads, TorqueFunction};
 
 /// The rigid bodies of each copy, the last of its bodies.
 #[derive(FromPyObject)]

@@ -7,7 +7,7 @@
 use super::super::moments::check;
 use super::super::quaternion::{IDENTITY, Quaternion, conjugate, product, rotated, unit};
 use super::flows::Free;
-use super::loads::Load;
+use super::loads::{Load, OwnLoads};
 use super::turn::Inverses;
 use super::vectors::turned;
 use crate::error::{Error, Result};
@@ -47,15 +47,6 @@ pub struct RigidBodies {
     pub own_loads: Option<OwnLoads>,
 }
 
-/// Loads that copies have of their own.
-#[derive(Clone, Debug)]
-pub struct OwnLoads {
-    /// Different sets of them.
-    pub sets: Vec<Vec<Load>>,
-    /// Which of these each copy has.
-    pub of_copy: Vec<usize>,
-}
-
 impl RigidBodies {
     /// Those of some copies.
     #[must_use]
@@ -72,10 +63,7 @@ impl RigidBodies {
             orientation: pick(&self.orientation, self.count, members),
             angular_velocity: pick(&self.angular_velocity, self.count, members),
             loads: self.loads_of(members.first().copied().unwrap_or(0)).to_vec(),
-            own_loads: self.own_loads.as_ref().map(|own| OwnLoads {
-                sets: own.sets.clone(),
-                of_copy: members.iter().map(|&copy| own.of_copy[copy]).collect(),
-            }),
+            own_loads: self.own_loads.as_ref().map(|own| own.of(members)),
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::words::{number, numbers};
 use core::fmt::{Debug, Formatter};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A torque in space, from the time since the start of the scene's time, the orientation and the angular velocity in the body.
@@ -212,5 +213,31 @@ impl Load {
                 })
             }
         }
+    }
+}
+
+/// Loads that copies have of their own.
+#[derive(Clone, Debug)]
+pub struct OwnLoads {
+    /// Different sets of them.
+    pub sets: Vec<Vec<Load>>,
+    /// Which of these each copy has.
+    pub of_copy: Vec<usize>,
+}
+
+impl OwnLoads {
+    /// Those of some copies, and no others: what is asked of all sets is asked of theirs.
+    pub(super) fn of(&self, members: &[usize]) -> Self {
+        let mut known = BTreeMap::new();
+        let mut sets = Vec::new();
+        let of_copy = members.iter().map(|&copy| {
+            let set = self.of_copy[copy];
+            *known.entry(set).or_insert_with(|| {
+                sets.push(self.sets[set].clone());
+                sets.len() - 1
+            })
+        });
+        let of_copy = of_copy.collect();
+        Self { sets, of_copy }
     }
 }

@@ -71,10 +71,10 @@ fn stretched(
     let apart = writer.plus(one[0], -1.0, other[0]);
     let square = writer.dot(apart, apart);
     let stiffness = writer.number(stiffness);
-    let length = writer.number(length);
     let mut factor = stiffness;
-    // Without a length it has no direction where its ends meet, and needs none.
-    if !writer.graph.is_zero(length) {
+    // Without a length, which copies in lanes have all or none, it has no direction where its ends meet, and needs none.
+    if length.0.iter().any(|&length| length != 0.0) {
+        let length = writer.number(length);
         let distance = writer.graph.power(square, 0.5);
         let part = writer.graph.divide(length, distance);
         let stretched = writer.graph.sum(1.0, &[(-1.0, part)]);

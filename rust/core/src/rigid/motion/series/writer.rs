@@ -19,11 +19,8 @@ impl Writer {
         Self { graph: Graph::default(), parameters: vec![Lanes([0.0; WIDTH]); open] }
     }
 
-    /// A number of each lane. What is 0 in all of them is left out of sums, which does not change them.
+    /// A number of each lane, whatever it is: an expression without a term that is 0 may be rounded in another order.
     pub(in crate::rigid::motion) fn number(&mut self, of: &Lanes) -> Id {
-        if of.0.iter().all(|&of| of == 0.0) {
-            return self.graph.constant(0.0);
-        }
         self.parameters.push(*of);
         self.graph.parameter(self.parameters.len() as u32 - 1)
     }
