@@ -374,7 +374,7 @@ def finished(
     if asked["rigid"] is not None:
         from visviva._rigid_accuracy import look
 
-        look(result, asked, cast("Any", made)._scene, threads)
+        look(result, asked, threads)
     warn_if_unresolved(result, asked, ensemble=ensemble)
     if times_may_be_coarse(asked["t0"], asked["times"].item(-1) if asked["times"].size else asked["t0"]):
         from visviva._coarse_times import warn_of_coarse_times
