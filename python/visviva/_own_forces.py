@@ -8,12 +8,13 @@ for what is refused, so that it is named.
 from __future__ import annotations
 
 from itertools import repeat
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from visviva._declared import as_comparable
 from visviva._keywords import did_you_mean
+from visviva._own_loads import load_of_copies, place_of_load, refuse_shared
 from visviva._own_potentials import names_of_potential, potential_of, potentials_of_copies
 from visviva._parameter import VECTORS
 from visviva.errors import InvalidInput
@@ -21,37 +22,57 @@ from visviva.forces import ExpressedForce, Force
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from typing import TypeAlias
+    from typing import TypeAlias, TypeVar
 
     from numpy.typing import NDArray
 
     from visviva import _core
+    from visviva._body_force import BodyForce
     from visviva._parameter import Parameter
     from visviva.scene import Scene
 
+    _Acts = TypeVar("_Acts", Force, BodyForce)
     _Values: TypeAlias = NDArray[np.float64] | Sequence[Any]
 
-__all__ = ["described", "forces_of_copies"]
+__all__ = ["Acting", "described", "forces_of_copies"]
 
 
-def forces_of_copies(
-    scene: Scene, parameters: Mapping[Force | int | str, Mapping[str, Any]]
-) -> tuple[tuple[Force, ...], ...]:
+class Acting(NamedTuple):
+    """What acts in each copy: forces on points, and those on rigid bodies."""
+
+    forces: tuple[tuple[Force, ...], ...]
+    loads: tuple[tuple[BodyForce, ...], ...]
+
+
+def forces_of_copies(scene: Scene, parameters: Mapping[Force | BodyForce | int | str, Mapping[str, Any]]) -> Acting:
     """The forces of each copy: those of the scene with the values that the copies have of their own."""
     if not hasattr(parameters, "items") or not parameters:
         raise InvalidInput("parameters", f"expected a dictionary {{force: {{name: values}}}}, got {parameters!r}")
     values: dict[int, dict[str, _Values]] = {}
+    of_loads: dict[int, dict[str, _Values]] = {}
     for which, named in parameters.items():
-        place = _place(scene, which)
+        of_load = place_of_load(scene, which)
+        place = _place(scene, which) if of_load is None else of_load
         if not hasattr(named, "items") or not named:
             raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
+        if of_load is not None:
+            refuse_shared(scene.body_forces[place], named)
+            own = {name: _values_by_copy(name, given) for name, given in named.items()}
+            of_loads.setdefault(place, {}).update(own)
+            continue
         kinds = {parameter.name: parameter.kind for parameter in scene.forces[place]._parameters}
         for name, given in _own_values(scene.forces[place], named, kinds).items():
             by_copy = _bodies_by_copy if kinds[name] == "indices" else _values_by_copy
             values.setdefault(place, {})[name] = by_copy(name, given)
-    count = _count([pair for named in values.values() for pair in named.items()])
+    count = _count([pair for named in (*values.values(), *of_loads.values()) for pair in named.items()])
     columns = (_of_copies(scene, force, values.get(place), count) for place, force in enumerate(scene.forces))
-    return tuple(zip(*columns, strict=True))
+    loads = (load_of_copies(load, of_loads.get(place), count) for place, load in enumerate(scene.body_forces))
+    return Acting(_by_copy(columns, count), _by_copy(loads, count))
+
+
+def _by_copy(columns: Iterable[Iterable[_Acts]], count: int) -> tuple[tuple[_Acts, ...], ...]:
+    """What acts in each copy, of what each of it is in all of them."""
+    return tuple(zip(*columns, strict=True)) or ((),) * count
 
 
 def _count(values: Sequence[tuple[str, _Values]]) -> int:
@@ -203,9 +224,9 @@ def _without_axis(name: str, given: Any) -> InvalidInput:
     return InvalidInput("parameters", f"expected values of {name!r} with a leading axis over the copies, got {given!r}")
 
 
-def _hint(which: Any, forces: Sequence[Force]) -> str:
+def _hint(which: Any, forces: Sequence[Force | BodyForce]) -> str:
     """What to write for a name that is none of a force: the nearest, or the force that has a parameter of that name."""
-    owner = next((each for each in forces if which in [p.name for p in each._parameters]), None)
+    owner = next((each for each in forces if which in each._values()), None)
     if owner is not None:
         return f"it is a parameter: {{{type(owner).__name__!r}: {{{which!r}: values}}}}"
     near = did_you_mean(which, [name for each in forces for name in _names(each)]) if isinstance(which, str) else ""
@@ -213,27 +234,26 @@ def _hint(which: Any, forces: Sequence[Force]) -> str:
 
 
 def _place(scene: Scene, which: Any) -> int:
-    """The place of a force that is given itself, by its place, or by the name of its class."""
+    """The place of a force on points that is given itself, by its place, or by the name of its class."""
     forces = scene.forces
-    shown = ", ".join(map(repr, forces)) or "none"
-    if any(which in (force, *_names(force)) for force in scene.body_forces):
-        raise InvalidInput(
-            "parameters",
-            f"expected a force on points ({shown}), got {which!r}: what acts on rigid bodies is the same in all "
-            "copies; run a scene for each of its values",
-        )
+    shown = ", ".join(map(repr, (*forces, *scene.body_forces))) or "none"
     if isinstance(which, bool) or not isinstance(which, int | str | Force):
         raise InvalidInput("parameters", f"expected forces of the scene ({shown}), got {which!r}")
     if isinstance(which, int):
         if not 0 <= which < len(forces):
-            raise InvalidInput("parameters", f"expected the place of a force, below {len(forces)}, got {which}")
+            others = "; give a force on rigid bodies itself, or the name of its class" if scene.body_forces else ""
+            raise InvalidInput("parameters", f"expected the place of a force, below {len(forces)}, got {which}{others}")
         return which
     if isinstance(which, Force):
         # The scene keeps indices where bodies were named.
         which = which._resolved(scene.particles.names, len(scene.particles))
     found = [i for i, force in enumerate(forces) if which in (force, *_names(force))]
     if len(found) != 1:
-        why = _hint(which, forces) if not found else "it has several like that: give the place of one"
+        why = (
+            _hint(which, (*forces, *scene.body_forces))
+            if not found
+            else "it has several like that: give the place of one"
+        )
         raise InvalidInput("parameters", f"expected a force of the scene ({shown}), got {which!r}; {why}")
     return found[0]
 
@@ -244,15 +264,19 @@ def _names(force: object) -> tuple[str, ...]:
     return (type(force).__name__, *made_by)
 
 
-def described(copies: tuple[tuple[Force, ...], ...]) -> _core._OwnForces:
-    """What the core and a file are told: each set of forces once, and which of them each copy has."""
+def described(copies: tuple[tuple[Force, ...], ...]) -> tuple[list[dict[str, Any]], _core._OwnForces | None]:
+    """What the core and a file are told: the forces of the first copy, and what each has if they differ.
+
+    That is each set of forces once, and which of them each copy has.
+    """
     told = [_told(column) for column in zip(*copies, strict=True)]
     if not told:
-        return [[]], [0] * len(copies)
-    sets: dict[tuple[int, ...], int] = {}
-    of_copy = [sets.setdefault(which, len(sets)) for which in zip(*(each for _, each in told), strict=True)]
-    chosen = ([each[one] for one in which] for (each, _), which in zip(told, zip(*sets, strict=True), strict=True))
-    return list(map(list, zip(*chosen, strict=True))), of_copy
+        return [], None
+    numbers: dict[tuple[int, ...], int] = {}
+    of_copy = [numbers.setdefault(which, len(numbers)) for which in zip(*(each for _, each in told), strict=True)]
+    chosen = ([each[one] for one in which] for (each, _), which in zip(told, zip(*numbers, strict=True), strict=True))
+    sets = list(map(list, zip(*chosen, strict=True)))
+    return sets[of_copy[0]], (sets, of_copy) if len(sets) > 1 else None
 
 
 def _told(column: tuple[Force, ...]) -> tuple[list[dict[str, Any]], list[int]]:

@@ -19,8 +19,6 @@ from visviva.status import Status
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from visviva.scene import Scene
-
 __all__ = ["look"]
 
 _FEW_PAIRS = 500
@@ -44,8 +42,8 @@ _NOTHING = 1e-9
 _ENERGIES = ["energy", "kinetic_energy", "potential_energy"]
 
 
-def look(result: dict[str, Any], asked: _core._Request, scene: Scene, threads: int | None) -> None:
-    """Tell in the result of a run of copies of the scene how far the worst of their energies is off at the end.
+def look(result: dict[str, Any], asked: _core._Request, threads: int | None) -> None:
+    """Tell in the result of a run of copies of a scene how far the worst of their energies is off at the end.
 
     Where it costs next to nothing beside the run, and the forces conserve energy. Where they do not, of steps.
     """
@@ -53,7 +51,8 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene, threads: i
         return
     bodies = asked["mass"].shape[1]
     of_all = (asked["mass"], asked["rigid"]["moments"], asked["rigid"]["axes"])
-    together = asked["own_forces"] is None and all(bool((each == each[0]).all()) for each in of_all)
+    alike = asked["own_forces"] is None and asked["rigid"]["own_loads"] is None
+    together = alike and all(bool((each == each[0]).all()) for each in of_all)
     few = bodies * (bodies - 1) // 2 <= _FEW_PAIRS
     each_apart = not together and len(asked["mass"]) > _FEW_ALONE
     fewest = _ALONE if each_apart else 0 if few else _MANY_EVALUATIONS
@@ -66,7 +65,7 @@ def look(result: dict[str, Any], asked: _core._Request, scene: Scene, threads: i
     if not (finished & (enough | again)).any():
         return
     try:
-        told = _tells(asked, scene)
+        told = _tells(asked)
     except Error:
         return  # A run that is done is not lost for what cannot be told of it.
     looked_at = finished & told & enough
@@ -116,17 +115,17 @@ def _forces(asked: _core._Request, copy: int) -> list[dict[str, Any]]:
     return asked["forces"] if own is None else own[0][own[1][copy]]
 
 
-def _tells(asked: _core._Request, scene: Scene) -> NDArray[np.bool_]:
+def _tells(asked: _core._Request) -> NDArray[np.bool_]:
     """Of each copy whether its energy is conserved."""
-    copies = len(asked["mass"])
-    if asked["own_forces"] is None:
-        return np.full(copies, _conserves(asked, 0, scene))
-    own = np.asarray(asked["own_forces"][1])
-    _, firsts, sets = np.unique(own, return_index=True, return_inverse=True)
-    return np.array([_conserves(asked, int(copy), scene) for copy in firsts])[sets]
+    rigid: Any = asked["rigid"]
+    same = (None, [0] * len(asked["mass"]))
+    # By what acts on points and on rigid bodies: copies are asked once for those that have the same.
+    acting = np.array([(own or same)[1] for own in (asked["own_forces"], rigid["own_loads"])])
+    _, firsts, sets = np.unique(acting, axis=1, return_index=True, return_inverse=True)
+    return np.array([_conserves(asked, int(copy)) for copy in firsts])[sets.ravel()]
 
 
-def _conserves(asked: _core._Request, copy: int, scene: Scene) -> bool:
+def _conserves(asked: _core._Request, copy: int) -> bool:
     kept = _core.conserves(
         mass=asked["mass"][copy],
         forces=_forces(asked, copy),
@@ -134,7 +133,13 @@ def _conserves(asked: _core._Request, copy: int, scene: Scene) -> bool:
         velocity=asked["velocity"][copy],
         about=np.zeros(3),
     )
-    return kept_by_bodies(scene, kept)["energy"]
+    return kept_by_bodies(_rigid(asked, copy), kept)["energy"]
+
+
+def _rigid(asked: _core._Request, copy: int) -> _core._Rigid:
+    of_one: Any = of_copies(asked, slice(copy, copy + 1))["rigid"]
+    rigid: _core._Rigid = of_one
+    return rigid
 
 
 def _changes(
@@ -168,7 +173,6 @@ def _last(result: dict[str, Any]) -> list[NDArray[np.float64]]:
 def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Of states along the first axis, of bodies with the masses and forces of that copy."""
     position, velocity, *turning = states
-    rigid: Any = of_copies(asked, slice(copy, copy + 1))["rigid"]
     return _core.conserved(
         mass=asked["mass"][copy],
         forces=_forces(asked, copy),
@@ -176,7 +180,7 @@ def _energies(asked: _core._Request, copy: int, states: list[NDArray[np.float64]
         velocity=velocity,
         about=np.zeros(3),
         columns=_ENERGIES,
-        turning=(rigid, turning[0], turning[1]),
+        turning=(_rigid(asked, copy), turning[0], turning[1]),
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva._arrays import float_array, read_only
 from visviva._names import body_label
+from visviva._own_loads import described_loads
 from visviva._rigid_arguments import refuse_on_rods, unit_quaternions
 from visviva._turning import held_centers, no_bodies
 from visviva.errors import InvalidInput
@@ -20,9 +21,12 @@ from visviva.rigid._orientation import rotate
 from visviva.rigid_bodies import IS_ROUNDED, RigidBodies
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva._body_force import BodyForce
     from visviva.scene import Scene
 
 __all__ = ["checked_inertia", "checked_turning", "core_rigid_of_copies", "inertia_of_one", "turning_of_copies"]
@@ -97,13 +101,30 @@ def _made_of_their_own(
     )
 
 
-def _principal_of_copies(scene: Scene, rigid: RigidBodies, bodies: RigidBodies) -> dict[str, NDArray[np.float64]]:
+def _refuse_on_rods_of_copies(
+    scene: Scene, rigid: RigidBodies, bodies: RigidBodies | None, loads: Sequence[tuple[BodyForce, ...]] | None
+) -> None:
+    """Refuse what would turn rods about their own axes, where copies have bodies or forces of their own."""
+    number = len(rigid)
+    if not scene.body_forces:
+        return
+    if bodies is not None:
+        # Rods are few: what does not turn them is asked copy by copy.
+        for copy in np.unique(np.flatnonzero((bodies.principal_moments == 0.0).any(axis=-1)) // number).tolist():
+            refuse_on_rods(bodies[copy * number : (copy + 1) * number], loads[copy] if loads else scene.body_forces)
+    elif loads and not rigid.principal_moments.all():
+        for copy, own in enumerate(loads):
+            if copy and own is loads[copy - 1]:
+                continue
+            try:
+                refuse_on_rods(rigid, own)
+            except InvalidInput as error:
+                raise InvalidInput("parameters", f"of copy {copy}: {error}") from error
+
+
+def _principal_of_copies(rigid: RigidBodies, bodies: RigidBodies) -> dict[str, NDArray[np.float64]]:
     """Principal moments, axes and centers as the core takes them, an axis over the copies leading."""
     number = len(rigid)
-    if scene.body_forces:
-        # Rods are few: what does not turn them is asked copy by copy.
-        for first in np.unique(np.flatnonzero((bodies.principal_moments == 0.0).any(axis=-1)) // number) * number:
-            refuse_on_rods(bodies[first : first + number], scene.body_forces)
     found = {"moments": bodies.principal_moments, "axes": bodies.axes, "center": bodies.center}
     return {name: each.reshape(-1, number, each.shape[-1]) for name, each in found.items()}
 
@@ -111,13 +132,17 @@ def _principal_of_copies(scene: Scene, rigid: RigidBodies, bodies: RigidBodies) 
 def core_rigid_of_copies(
     scene: Scene,
     count: int,
+    loads: Sequence[tuple[BodyForce, ...]] | None,
     turning: dict[str, NDArray[np.float64]],
     own: dict[str, NDArray[np.float64]],
     full: dict[str, NDArray[np.float64]],
     *,
     given: frozenset[str],
 ) -> _core._Rigid | None:
-    """What the core is told of the rigid bodies of all copies. Held points stay, unless bodies are moved."""
+    """What the core is told of the rigid bodies of all copies, on which these forces act, or those of the scene.
+
+    Held points stay, unless bodies are moved.
+    """
     described = scene._keywords["rigid"]
     rigid = scene.rigid_bodies
     if described is None or rigid is None:
@@ -130,10 +155,15 @@ def core_rigid_of_copies(
             "belong to the masses",
         )
     core_rigid: _core._Rigid = described.copy()
+    if loads:
+        core_rigid["loads"], core_rigid["own_loads"] = described_loads(loads)
     arrays: Any = core_rigid
+    bodies = None
     if own:
         spins = np.broadcast_to(turning.get("angular_velocity", rigid.angular_velocity), (count, len(rigid), 3))
-        arrays |= _principal_of_copies(scene, rigid, _made_of_their_own(rigid, own, masses, spins))
+        bodies = _made_of_their_own(rigid, own, masses, spins)
+        arrays |= _principal_of_copies(rigid, bodies)
+    _refuse_on_rods_of_copies(scene, rigid, bodies, loads)
     for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
         each = turning.get(name, arrays[name])
         arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))

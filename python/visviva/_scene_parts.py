@@ -17,7 +17,9 @@ from visviva.rigid_bodies import RigidBodies
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Part", "sorted_parts"]
+    _Known: TypeAlias = tuple[tuple[str, ...], int]
+
+__all__ = ["Part", "bodies_and_particles", "sorted_parts"]
 
 # Made once: a union of types takes longer to make than to ask.
 Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
@@ -51,6 +53,12 @@ def sorted_parts(
         advice = JOINING if found else "the forces need bodies to act on"
         raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
     return cast("tuple[Part, ...]", all_parts), found, rigid
+
+
+def bodies_and_particles(points: Particles, rigid: RigidBodies | None) -> tuple[_Known, _Known]:
+    """Names and number of the rigid bodies among the points of a scene, the last of them, and of its particles."""
+    free = len(points) - (len(rigid) if rigid else 0)
+    return (points.names[free:], len(points) - free), (points.names[:free], free)
 
 
 def _cure(part: object) -> str:

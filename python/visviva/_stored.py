@@ -299,6 +299,11 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
     if "rigid" in header:
         check_keys("header", header, {"rigid": dict})
         check_keys("account of rigid bodies", header["rigid"], {"forces": list, "names": list})
+        own = header["rigid"].get("own_forces")
+        if own is not None and len(own[1]) != lengths["B"]:
+            raise Damaged(f"the file has forces on rigid bodies of {len(own[1])} copies, of {lengths['B']}")
+        if own is not None and any(list(map(_kind, each)) != list(map(_kind, own[0][0])) for each in own[0]):
+            raise Damaged("the file has copies on whose rigid bodies other kinds of forces act")
         check_all(_RIGID, arrays, lengths)
         check_all({name: _RIGID_OWN[name] for name in _RIGID_OWN if name in arrays}, arrays, lengths)
     if "radius" in arrays:
@@ -320,6 +325,10 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
     known = {int(status) for status in Status}
     if not known.issuperset(arrays["status"].tolist()):
         raise Damaged("the file has a status that this version does not know")
+
+
+def _kind(force: dict[str, Any]) -> Any:
+    return force["kind"]
 
 
 def _check_collisions(arrays: dict[str, NDArray[Any]], lengths: dict[str, int]) -> None:

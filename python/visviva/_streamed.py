@@ -70,7 +70,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             if result["error"] is not None or (ended == Status.INTERRUPTED).any():
                 raise KeyboardInterrupt
             if own["rigid"] is not None:
-                look(result, own, part.scene, threads)
+                look(result, own, threads)
             _keep_worst(worst, result, start)
             made = part._finished(result)
             yield from groups(made._exported(None), made._row_axes, start)

@@ -29,6 +29,7 @@ __all__ = [
     "held_centers",
     "joined_bodies",
     "kept_by_bodies",
+    "loads_of_copies_from_file",
     "no_bodies",
     "rigid_for_file",
     "rigid_from_file",
@@ -122,13 +123,12 @@ def no_bodies(name: str) -> InvalidInput:
     return InvalidInput(name, "expected None: the scene has no rigid bodies")
 
 
-def kept_by_bodies(scene: Scene, kept: dict[str, bool]) -> dict[str, bool]:
-    """What of the invariants is left where points of rigid bodies are held, and forces act on them."""
-    springs = [force for force in scene.body_forces if isinstance(force, AttachedSpring)]
-    others = len(springs) < len(scene.body_forces)
-    held = bool(scene.rigid_bodies is not None and scene.rigid_bodies.pivoted.any())
-    held |= any(spring.anchor is not None for spring in springs)
-    lossless = not others and not any(spring.damping for spring in springs)
+def kept_by_bodies(rigid: _core._Rigid, kept: dict[str, bool]) -> dict[str, bool]:
+    """What of the invariants is left where points of the rigid bodies of a copy are held, and forces act on them."""
+    springs = [load for load in rigid["loads"] if load["kind"] == AttachedSpring.kind]
+    others = len(springs) < len(rigid["loads"])
+    held = any(rigid["pivoted"]) or any(spring["anchor"] is not None for spring in springs)
+    lossless = not others and not any(spring["damping"] for spring in springs)
     turns = kept["angular_momentum"] and not held and not others
     return {
         "energy": kept["energy"] and lossless,
@@ -147,8 +147,8 @@ def spin_scale(scene: Scene) -> float:
     return float(np.linalg.norm(rigid.principal_moments * spin, axis=-1).sum())
 
 
-def rigid_for_file(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
-    """What a file keeps of rigid bodies: for its header, and arrays by name.
+def rigid_for_file(scene: Scene, told: _core._Rigid | None) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
+    """What a file keeps of rigid bodies and of what the core was told of them: for its header, and arrays by name.
 
     Raises
     ------
@@ -156,15 +156,15 @@ def rigid_for_file(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.f
         For a torque that is a compiled function.
     """
     rigid = scene.rigid_bodies
-    if rigid is None:
+    if rigid is None or told is None:
         return {}, {}
-    loads = [load._core_arguments() for load in scene.body_forces]
-    if any("address" in load for load in loads):
+    if any("address" in load for load in told["loads"]):
         raise InvalidInput("run", "a CompiledTorque is at its address in this process only: such a run cannot be saved")
     own = {name: getattr(rigid, name) for name in ("moments", "inertia", "pivot")}
-    return {"rigid": {"forces": loads, "names": rigid.names}}, {
-        f"rigid/{n}": a for n, a in own.items() if a is not None
-    }
+    header: dict[str, Any] = {"forces": told["loads"], "names": rigid.names}
+    if told["own_loads"] is not None:
+        header["own_forces"] = told["own_loads"]
+    return {"rigid": header}, {f"rigid/{n}": a for n, a in own.items() if a is not None}
 
 
 def rigid_from_file(
@@ -185,10 +185,21 @@ def rigid_from_file(
     centers = {name: getattr(points, name)[-count:] for name in ("mass", "position", "velocity")}
     names = header["rigid"]["names"] or points.names[len(points) - count :] or None
     bodies = RigidBodies(**centers, **own, **turning, names=names)
-    kinds: dict[str, Any] = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
-    forces: list[BodyForce] = []
-    for description in header["rigid"]["forces"]:
-        values = dict(description)
-        forces.append(kinds[values.pop("kind")](**values))
     free = len(points) - count
-    return [*([points[:free]] if free else []), bodies], forces
+    return [*([points[:free]] if free else []), bodies], [*_loads_from_file(header["rigid"]["forces"])]
+
+
+def loads_of_copies_from_file(header: dict[str, Any]) -> tuple[tuple[BodyForce, ...], ...] | None:
+    """The forces on rigid bodies of each copy of a file; None where they are the same in all."""
+    own = header.get("rigid", {}).get("own_forces")
+    if own is None:
+        return None
+    sets = [_loads_from_file(descriptions) for descriptions in own[0]]
+    return tuple(sets[which] for which in own[1])
+
+
+def _loads_from_file(descriptions: list[dict[str, Any]]) -> tuple[BodyForce, ...]:
+    kinds: dict[str, Any] = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
+    return tuple(
+        kinds[each["kind"]](**{name: value for name, value in each.items() if name != "kind"}) for each in descriptions
+    )

@@ -11,7 +11,7 @@ from visviva._continuation import continuation_of_copies, with_continuation
 from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
 from visviva._made_by import made_by
-from visviva._own_forces import described, forces_of_copies
+from visviva._own_forces import Acting, described, forces_of_copies
 from visviva._rigid_copies import (
     checked_inertia,
     checked_turning,
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva._body_force import BodyForce
     from visviva.forces import Force
     from visviva.request import RunRequest
     from visviva.scene import Scene
@@ -53,7 +54,9 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     position, velocity : ndarray, shape (B, N, 3)
     radius : ndarray, shape (B, N)
     forces : tuple of tuple of Force
-        Those of each copy.
+        Those on points of each copy.
+    body_forces : tuple of tuple
+        Those on rigid bodies of each copy.
 
     Indexing with a number gives the `Scene` of one copy, with a slice a smaller ensemble.
 
@@ -66,7 +69,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     (2, (2, 2, 3), False)
     """
 
-    __slots__ = ("_inertia", "_keywords", "forces", "mass", "position", "radius", "scene", "velocity")
+    __slots__ = ("_inertia", "_keywords", "body_forces", "forces", "mass", "position", "radius", "scene", "velocity")
 
     _is_ensemble = True
 
@@ -76,6 +79,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     velocity: NDArray[np.float64]
     radius: NDArray[np.float64]
     forces: tuple[tuple[Force, ...], ...]
+    body_forces: tuple[tuple[BodyForce, ...], ...]
     _inertia: dict[str, NDArray[np.float64]]
 
     def __init__(
@@ -86,7 +90,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
-        parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
+        parameters: Mapping[Force | BodyForce | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
         moments: ArrayLike | None = None,
@@ -95,6 +99,44 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         from visviva.scene import Scene
 
         made_by(self, "scene.ensemble(...)", scene=(scene, Scene))
+        self._set(
+            scene,
+            None if parameters is None else forces_of_copies(scene, parameters),
+            position=position,
+            velocity=velocity,
+            mass=mass,
+            radius=radius,
+            orientation=orientation,
+            angular_velocity=angular_velocity,
+            moments=moments,
+            inertia=inertia,
+        )
+
+    @classmethod
+    def _of(cls, scene: Scene, acting: Acting, **own: ArrayLike | None) -> EnsembleScene:
+        """Copies in which this acts, and that have this of their own."""
+        copies = object.__new__(cls)
+        copies._set(scene, acting, **own)
+        return copies
+
+    def _like(self, scene: Scene, **own: ArrayLike | None) -> EnsembleScene:
+        """Copies in which acts what acts in these."""
+        return self._of(scene, Acting(self.forces, self.body_forces), **own)
+
+    def _set(
+        self,
+        scene: Scene,
+        acting: Acting | None,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        mass: ArrayLike | None = None,
+        radius: ArrayLike | None = None,
+        orientation: ArrayLike | None = None,
+        angular_velocity: ArrayLike | None = None,
+        moments: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+    ) -> None:
         own = {name: getattr(scene.particles, name) for name in ("mass", "position", "velocity", "radius")}
         given = {
             name: read_only(float_array(name, value, ("B", *own[name].shape)), value)
@@ -108,10 +150,9 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             given["radius"] = read_only(radius_array(each, each.shape), radius)
         turning = checked_turning(scene, orientation, angular_velocity)
         own_inertia = checked_inertia(scene, moments, inertia)
-        own_forces = None if parameters is None else forces_of_copies(scene, parameters)
         lengths = {name: array.shape[0] for name, array in (given | turning | own_inertia).items()}
-        if own_forces is not None:
-            lengths["parameters"] = len(own_forces)
+        if acting is not None:
+            lengths["parameters"] = len(acting.forces)
         if not lengths:
             raise InvalidInput(
                 "position",
@@ -128,7 +169,9 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
-        rigid = core_rigid_of_copies(scene, count, turning, own_inertia, full, given=frozenset(given))
+        forces, own_forces = (scene._keywords["forces"], None) if acting is None else described(acting.forces)
+        loads = None if acting is None else acting.loads
+        rigid = core_rigid_of_copies(scene, count, loads, turning, own_inertia, full, given=frozenset(given))
         prepared: _core._Scene = {
             "mass": full["mass"],
             "position": full["position"],
@@ -136,24 +179,15 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             # Some copies may be of points: who says so knows of radii.
             "radius": full["radius"] if radius is not None or full["radius"].any() else None,
             "rigid": rigid,
-            "forces": scene._keywords["forces"],
-            "own_forces": None,
+            "forces": forces,
+            "own_forces": own_forces,
             "t0": scene.t0,
             "continuation": None,
         }
-        state = {"scene": scene, **full, "forces": (scene.forces,) * count}
+        acting = acting or Acting((scene.forces,) * count, (scene.body_forces,) * count)
+        state = {"scene": scene, **full, "forces": acting.forces, "body_forces": acting.loads}
         for name, value in {**state, "_keywords": prepared, "_inertia": own_inertia}.items():
             object.__setattr__(self, name, value)
-        if own_forces is not None:
-            self._own(own_forces)
-
-    def _own(self, forces: tuple[tuple[Force, ...], ...]) -> EnsembleScene:
-        """Itself, which was just made, with these forces of the copies."""
-        own = described(forces)
-        object.__setattr__(self, "forces", forces)
-        self._keywords["forces"] = own[0][own[1][0]]
-        self._keywords["own_forces"] = own if len(own[0]) > 1 else None
-        return self
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -171,15 +205,16 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         if isinstance(chosen, slice):
             if self._keywords["radius"] is None:
                 del state["radius"]
-            some = EnsembleScene(self.scene, **state, **own, **inertia)
-            return with_continuation(some._own(self.forces[chosen]), continuation)
+            acting = Acting(self.forces[chosen], self.body_forces[chosen])
+            return with_continuation(EnsembleScene._of(self.scene, acting, **state, **own, **inertia), continuation)
         bodies = self.scene.particles._in_state(**{name: read_only(array) for name, array in state.items()})
         told = self._keywords["forces"]
         if self._keywords["own_forces"] is not None:
             sets, which = self._keywords["own_forces"]
             told = sets[which[chosen]]
         own |= inertia_of_one(inertia)
-        copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, told=told, **own)
+        loads = self.body_forces[chosen]
+        copy = self.scene._like(bodies, self.forces[chosen], self.scene.t0, told=told, loads=loads, **own)
         if self._keywords["radius"] is not None:
             copy._keywords["radius"] = bodies.radius[None]
         return with_continuation(copy, continuation)
@@ -208,7 +243,15 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         state = (self.position, self.velocity, self.mass)
         own = turning_of_copies(self._keywords, slice(None)) | self._inertia
         radius = self._keywords["radius"]
-        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, radius, own)
+        return _rebuild, (
+            self.scene,
+            *state,
+            self._keywords["continuation"],
+            self.forces,
+            radius,
+            own,
+            self.body_forces,
+        )
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -287,14 +330,14 @@ def _rebuild(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     mass: NDArray[np.float64],
-    continuation: _core._Continuation | None = None,
-    forces: tuple[tuple[Force, ...], ...] | None = None,
-    radius: NDArray[np.float64] | None = None,
-    turning: dict[str, NDArray[np.float64]] | None = None,
+    continuation: _core._Continuation | None,
+    forces: tuple[tuple[Force, ...], ...],
+    radius: NDArray[np.float64] | None,
+    turning: dict[str, NDArray[np.float64]],
+    loads: tuple[tuple[BodyForce, ...], ...],
 ) -> EnsembleScene:
-    own: dict[str, Any] = turning or {}
-    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
-    return with_continuation(copies if forces is None else copies._own(forces), continuation)
+    state = {"position": position, "velocity": velocity, "mass": mass, "radius": radius}
+    return with_continuation(EnsembleScene._of(scene, Acting(forces, loads), **state, **turning), continuation)
 
 
 def __dir__() -> list[str]:

@@ -223,14 +223,14 @@ class EnsembleTrajectory(Recorded):
         last = self._result["final"]
         own: dict[str, Any] = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
         first = {name: array[0] for name, array in own.items()}
-        shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **first)
+        # Bodies of the scene may be rods that do not turn as those of the first copy, which has its own.
+        shared = self.ensemble[0] if self.ensemble._inertia else self.ensemble.scene
+        shared = shared.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **first)
         mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
         state = {"position": last["position"], "velocity": last["velocity"]}
         own |= self.ensemble._inertia
-        copies = type(self.ensemble)(shared, **state, mass=mass, radius=radius, **own)
-        return with_continuation(
-            copies._own(self.ensemble.forces), continuation_after(self.ensemble._keywords, self._result)
-        )
+        copies = self.ensemble._like(shared, **state, mass=mass, radius=radius, **own)
+        return with_continuation(copies, continuation_after(self.ensemble._keywords, self._result))
 
     def conservation(self, about: ArrayLike | str | None = None) -> EnsembleConservation:
         """How well the invariants held in each copy: what `Trajectory.conservation` tells of one, of all.

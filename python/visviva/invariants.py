@@ -126,7 +126,8 @@ def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
     flags = _core.conserves(
         mass=p.mass, forces=scene._keywords["forces"], position=p.position, velocity=p.velocity, about=about
     )
-    return flags if scene.rigid_bodies is None else kept_by_bodies(scene, flags)
+    rigid = scene._keywords["rigid"]
+    return flags if rigid is None else kept_by_bodies(rigid, flags)
 
 
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:

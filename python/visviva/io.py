@@ -22,9 +22,10 @@ import visviva
 from visviva._continuation import ARRAYS, SHARED, turning, with_continuation
 from visviva._files import write
 from visviva._keywords import known_keywords
+from visviva._own_forces import Acting
 from visviva._paths import path_text
 from visviva._stored import COUNTS, FOIL, FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, check_contents, read_file
-from visviva._turning import rigid_for_file, rigid_from_file
+from visviva._turning import loads_of_copies_from_file, rigid_for_file, rigid_from_file
 from visviva.ensemble import EnsembleScene
 from visviva.ensemble_trajectory import EnsembleTrajectory
 from visviva.errors import InvalidInput
@@ -37,6 +38,7 @@ from visviva.trajectory import Trajectory
 if TYPE_CHECKING:
     from os import PathLike
 
+    from visviva.forces import Force
     from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
     from visviva.recorded import Recorded
     from visviva.scattering import FoilResult, MonteCarlo
@@ -98,7 +100,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         header["events"] = result["looked_for"]
     if "continuation" in result:
         header["continuation"] = result["continuation"]
-    about_rigid, of_rigid = rigid_for_file(run._scene)
+    about_rigid, of_rigid = rigid_for_file(run._scene, start["rigid"])
     header |= about_rigid
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
@@ -199,8 +201,12 @@ def _run_from_file(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory
     scene = Scene(*bodies, *forces, *loads, t0=header["t0"])
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
-        copies = EnsembleScene(
+        count = len(arrays["mass"])
+        own_forces = _forces_of_copies(header) or (scene.forces,) * count
+        own_loads = loads_of_copies_from_file(header) or (scene.body_forces,) * count
+        copies = EnsembleScene._of(
             scene,
+            Acting(own_forces, own_loads),
             mass=arrays["mass"],
             position=arrays["position"],
             velocity=arrays["velocity"],
@@ -210,24 +216,29 @@ def _run_from_file(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory
             moments=arrays.get("rigid/own_moments"),
             inertia=arrays.get("rigid/own_inertia"),
         )
-        if header.get("own_forces") is not None:
-            sets, of_copy = header["own_forces"]
-            of_first = list(map(force_from_core, sets[0]))
-            # Most sets have most forces of the first: made once, they are checked and compared once.
-            own = [
-                tuple(
-                    known if description == told else force_from_core(description)
-                    for description, told, known in zip(forces, sets[0], of_first, strict=True)
-                )
-                for forces in sets
-            ]
-            copies = copies._own(tuple(own[which] for which in of_copy))
         run = EnsembleTrajectory(with_continuation(copies, before), result)
     else:
         run = Trajectory(with_continuation(scene, before), result)
     _ = run.stats, run.plan, run.status, "events" in result and run.events
     _ = "collisions" in result and run.collisions
     return run
+
+
+def _forces_of_copies(header: dict[str, Any]) -> tuple[tuple[Force, ...], ...] | None:
+    """The forces on points of each copy; None where they are the same in all."""
+    if header.get("own_forces") is None:
+        return None
+    sets, of_copy = header["own_forces"]
+    of_first = list(map(force_from_core, sets[0]))
+    # Most sets have most forces of the first: made once, they are checked and compared once.
+    own = [
+        tuple(
+            known if description == told else force_from_core(description)
+            for description, told, known in zip(forces, sets[0], of_first, strict=True)
+        )
+        for forces in sets
+    ]
+    return tuple(own[which] for which in of_copy)
 
 
 def __dir__() -> list[str]:

@@ -374,9 +374,8 @@ def finished(
     if asked["rigid"] is not None:
         from visviva._rigid_accuracy import look
 
-        scene = cast("Any", made)._scene
-        look(result, asked, scene, threads)
-        if not scene._turns_freely:
+        look(result, asked, threads)
+        if not cast("Any", made)._scene._turns_freely:
             from visviva._lost_spins import warn_of_lost_spins
 
             warn_of_lost_spins(asked, ensemble=ensemble)

@@ -18,7 +18,7 @@ from visviva._elsewhere import OF_SCENES
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import known_keywords
-from visviva._scene_parts import sorted_parts
+from visviva._scene_parts import bodies_and_particles, sorted_parts
 from visviva._scene_state import AtPresent
 from visviva._turning import described, joined_bodies, with_centers
 from visviva.forces import Force
@@ -110,8 +110,7 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         bodies = joined_bodies(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]
         acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
-        counts = (len(found[0]) if found else 0, len(bodies) if bodies else 0)
-        known_bodies = (points.names[counts[0] :], counts[1]), (points.names[: counts[0]], counts[0])
+        known_bodies = bodies_and_particles(points, bodies)
         loads = (part._resolved(*known_bodies) for part in all_parts if isinstance(part, BodyForce))
         self._set(points, tuple(acting), number("t0", t0), bodies, tuple(loads))
 
@@ -194,7 +193,7 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
-        parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
+        parameters: Mapping[Force | BodyForce | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
         moments: ArrayLike | None = None,
@@ -213,12 +212,13 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         radius : array_like, shape (B, N), optional
             Radii per copy.
         parameters : dict of dict, optional
-            For some forces of the scene (each given itself, by its place among them or by the name of its class),
-            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Those
-            of its potential, of a formula by their names in it, are named alike, and copies with equal values share it.
-            Copies share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs:
-            a term that a value of 0 leaves out, a softening, an exponent, a table, a formula's parameters. Forces on
-            rigid bodies are the same in all.
+            For some forces of the scene (each given itself, by the name of its class or, of forces on points, by its
+            place among them), values of some of their parameters with a leading axis over the copies:
+            ``{force: {"k": values}}``. Those of its potential, of a formula by their names in it, are named alike, and
+            copies with equal values share it. Copies share SIMD lanes and threads as those of one set of parameters do,
+            unless more than numbers differs: a term that a value of 0 leaves out, a softening, an exponent, a table, a
+            formula's parameters. Of forces on rigid bodies numbers and vectors may differ, which bodies, axes and
+            functions are meant may not.
         orientation : array_like, shape (B, K, 4), optional
             Quaternions of the rigid bodies per copy; points that are held stay where they are.
         angular_velocity : array_like, shape (B, K, 3), optional
@@ -257,6 +257,10 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         >>> out = wheel.ensemble(moments=[[[1.0, 1.0, 2.0]], [[1.0, 1.0, 0.5]]]).run(t=1.0)
         >>> out.angular_velocity[:, -1, 0, 2].round(9).tolist()
         [0.5, 2.0]
+        >>> torques = [[0.0, 0.0, 1.0], [0.0, 0.0, 3.0]]
+        >>> out = wheel.ensemble(parameters={"AppliedTorque": {"torque": torques}}).run(t=1.0)
+        >>> out.angular_velocity[:, -1, 0, 2].round(9).tolist()
+        [0.5, 1.5]
         """
         from visviva.ensemble import EnsembleScene
 
@@ -336,13 +340,14 @@ class Scene(Runnable[Trajectory], Framed, AtPresent):
         t0: float,
         change: Callable[[Any], Any] | None = None,
         told: list[dict[str, Any]] | None = None,
+        loads: tuple[BodyForce, ...] | None = None,
         **turning: Any,
     ) -> Scene:
         scene = object.__new__(type(self))
         if self.rigid_bodies is None:
             scene._set(particles, tuple(forces), number("t0", t0), None, (), told)
             return scene
-        rigid, loads = self.rigid_bodies, self.body_forces
+        rigid, loads = self.rigid_bodies, self.body_forces if loads is None else loads
         if change is not None:
             rigid, loads = change(rigid), tuple(map(change, loads))
         own = {name: getattr(particles, name)[-len(rigid) :] for name in ("mass", "position", "velocity")}

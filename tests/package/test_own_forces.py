@@ -258,14 +258,6 @@ def test_a_force_that_names_its_bodies_is_known_as_itself() -> None:
         scene.ensemble(parameters={vv.Spring("S", "b", k=1.0): {"k": [1.0, 2.0]}})
 
 
-def test_forces_on_rigid_bodies_are_those_of_the_scene() -> None:
-    rod = vv.RigidBody(1.0, [1.0, 1.0, 0.5])
-    torque = vv.AppliedTorque([0.0, 0.0, 1.0])
-    for which in (torque, "AppliedTorque"):
-        with pytest.raises(vv.InvalidInput, match="the same in all copies; run a scene for each"):
-            vv.Scene(rod, torque).ensemble(parameters={which: {"torque": [[0, 0, 1.0], [0, 0, 2.0]]}})
-
-
 def test_copies_that_lose_a_force_are_planned_apart_by_their_own_numbers() -> None:
     """Without the charge two of them are gravity alone, and series know one G: one moved with that of the other."""
     bodies = vv.Particles(
