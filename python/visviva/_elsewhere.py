@@ -6,7 +6,7 @@ need nothing here: the nearest is told of itself.
 
 from __future__ import annotations
 
-__all__ = ["MISSING", "OF_KEYWORDS", "OF_RUNS", "OF_SCENES", "OF_THE_PACKAGE", "SOLID"]
+__all__ = ["MISSING", "OF_KEYWORDS", "OF_RUNS", "OF_SCENES", "OF_THE_PACKAGE", "SOLID", "SYMBOLS"]
 
 _OUTPUTS = "give output times as t, as np.linspace(t0, t1, n); a method with equal steps takes their length as dt"
 _COPIES = "give states, masses or parameters with a leading axis over the copies, and there are as many"
@@ -63,6 +63,26 @@ OF_KEYWORDS = {
     ("from_elements", "node"): "give it as longitude_of_ascending_node",
     ("from_elements", "apocenter"): "give semi_major_axis and eccentricity",
     ("from_elements", "mu"): "it follows from G and the masses",
+}
+
+#: Symbols of books, and what they are called, where a function takes that.
+SYMBOLS = {
+    "b": ("impact_parameter",),
+    "E": ("energy", "beam_energy"),
+    "E0": ("beam_energy", "energy"),
+    "theta": ("angle", "cm_angle", "lab_angle"),
+    "chi": ("angle", "cm_angle"),
+    "N": ("n_events",),
+    "n": ("n_events",),
+    "events": ("n_events",),
+    "particles": ("n_events",),
+    "V": ("potential",),
+    "q0": ("position",),
+    "x0": ("position",),
+    "v0": ("velocity",),
+    "qdot0": ("velocity",),
+    "p0": ("momentum",),
+    "params": ("parameters",),
 }
 
 # Only scenes are saved while they run: what to do elsewhere, by the qualified name of what is called.

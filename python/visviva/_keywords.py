@@ -13,7 +13,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
-from visviva._elsewhere import MISSING, OF_KEYWORDS
+from visviva._elsewhere import MISSING, OF_KEYWORDS, SYMBOLS
 from visviva._text import article
 from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongArguments
 
@@ -218,7 +218,8 @@ def _wrong(
 def _unknown(function: Callable[..., object], called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     expected = f"a keyword of {called} ({', '.join(names)})" if names else f"no keyword, {called} takes none"
     by_name = OF_KEYWORDS.get(("run" if called == "plan" else called, came))
-    elsewhere = OF_KEYWORDS.get((function.__qualname__, came), by_name)
+    called_here = next((f"give it as {name}" for name in SYMBOLS.get(came, ()) if name in names), by_name)
+    elsewhere = OF_KEYWORDS.get((function.__qualname__, came), called_here)
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
 

@@ -1,15 +1,14 @@
 """Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
-has; a test compares. `TransformationName` is what a time transformation watches. `EventDirection` is
-which zeros are events. `EventColumnName`, `GeneralizedEventColumnName`, `CollisionColumnName`, `ElementName` and
-`ScatteringColumnName` are columns of tables. `GeneralizedMethodName`,
-`DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
-`FoilTallyName` what Monte Carlo runs count, `MaterialName`, `IonName` and `ScreeningName` what foils are made of, and
-`EulerConvention` names the turns of `visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`,
-`GeneralizedEvent` and `GeneralizedPath` are what goes into systems in generalized coordinates. A `CompiledFunction`
-(`NumbaFunction` is one) is at an address, an `Executor` runs parts elsewhere, `RunSettings` is what advice gives, and
-`IonHistory` the way of one ion.
+has; a test compares. `TransformationName` is what a time transformation watches. `EventDirection` is which zeros are
+events. `EventColumnName`, `GeneralizedEventColumnName`, `SectionColumnName`, `CollisionColumnName`, `ElementName` and
+`ScatteringColumnName` are columns of tables. `GeneralizedMethodName`, `DiscreteMethodName` and `GeneralizedColumnName`
+are those of systems in generalized coordinates; `TallyName` and `FoilTallyName` what Monte Carlo runs count,
+`MaterialName`, `IonName` and `ScreeningName` what foils are made of, and `EulerConvention` names the turns of
+`visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`, `GeneralizedEvent` and `GeneralizedPath` are what
+goes into systems in generalized coordinates. A `CompiledFunction` (`NumbaFunction` is one) is at an address, an
+`Executor` runs parts elsewhere, `RunSettings` is what advice gives, and `IonHistory` the way of one ion.
 """
 
 from __future__ import annotations
@@ -62,6 +61,7 @@ __all__ = [
     "RunSettings",
     "ScatteringColumnName",
     "ScreeningName",
+    "SectionColumnName",
     "SolverName",
     "SymbolicExpression",
     "TallyName",
@@ -155,6 +155,9 @@ EventColumnName: TypeAlias = Literal["which", "t", "position", "velocity", "memb
 
 GeneralizedEventColumnName: TypeAlias = EventColumnName | Literal["momentum"]
 """Columns of `visviva.generalized.GeneralizedEventTable`."""
+
+SectionColumnName: TypeAlias = Literal["t", "position", "momentum"]
+"""Columns of `visviva.generalized.PoincareSection`."""
 
 CollisionColumnName: TypeAlias = Literal[
     "t", "first", "second", "speed", "position", "energy_lost", "survivor", "member"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._elsewhere import OF_RUNS
 from visviva._exported import Columns, chosen_columns
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["StateColumns", "exported"]
 
+_OF_STATES = {"q": "position", "qdot": "velocity", "x": "position", "theta": "position", "H": "energy", "E": "energy"}
+_HAVE_SYSTEMS = ("system", "ensemble")
+
 
 class StateColumns:
     """Base of what has states, as the last axis of an array."""
@@ -29,6 +33,21 @@ class StateColumns:
     __slots__ = ()
 
     _states: NDArray[np.float64]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            # What is unpickled has no system yet.
+            advice = "" if name.startswith("_") or name in _HAVE_SYSTEMS else self._elsewhere(name)
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}{advice}", name=name, obj=self
+            )
+
+    def _elsewhere(self, name: str) -> str:
+        if name in self._whose.coordinates:
+            return f"; it is out[{name!r}]"
+        here = _OF_STATES.get(name, OF_RUNS.get(name, ""))
+        return f"; it is {here}" if hasattr(type(self), here.split("(")[0].split(".")[0]) else ""
 
     @property
     @abstractmethod

@@ -209,7 +209,7 @@ class GroundOnConstraints(Ground):
 def some_of_each(ground: Ground, found: list[Equilibrium]) -> list[Equilibrium]:
     """Of equilibria, stable ones and others, those that `Ground.some` tells."""
     kept = []
-    for stable in (False, True):
+    for stable in (False, None, True):
         alike = [each for each in found if each.stable is stable]
         if not alike:
             continue

@@ -129,6 +129,10 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         member = member_index(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
+    def _elsewhere(self, name: str) -> str:
+        one = hasattr(GeneralizedTrajectory, name) or name == "method"
+        return f"; each copy has one: out[i].{name}" if one else super()._elsewhere(name)
+
     @property
     def _whose(self) -> GeneralizedSystem:
         return self.ensemble.system
@@ -148,7 +152,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
         status = (("copy",), self.status.astype(np.int8))
-        return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
+        axes = {**made.axes, "copy": np.arange(len(self))}
+        return Columns(axes, {**made.of, "status": status}, {"method": self._asked["method"]})
 
     @property
     def stats(self) -> GeneralizedStats:

@@ -62,10 +62,12 @@ class Equilibrium(Record):
     Attributes
     ----------
     position : ndarray, shape (n,)
-    stable : bool
+    stable : bool or None
         Whether small motions about it stay small, as the linear equations tell, and the energy where these leave a
         direction level: at a minimum of any order they do, where it falls they do not. A drift along places that are
-        all equilibria, as of what may be moved as a whole, does not count.
+        all equilibria, as of what may be moved as a whole, does not count. None where rounding hides it: of a
+        Hamiltonian that no Lagrangian tells of, in fields so strong that what momenta add leaves no digits of the
+        rest. Write it in differences as p − A(q), not multiplied out, and these are told.
     frequencies : ndarray, shape (at most n,)
         Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)
@@ -87,7 +89,7 @@ class Equilibrium(Record):
     """
 
     position: NDArray[np.float64]
-    stable: bool
+    stable: bool | None
     frequencies: NDArray[np.float64]
     momentum: NDArray[np.float64]
     continuum: int = 0

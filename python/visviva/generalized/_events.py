@@ -232,7 +232,7 @@ class GeneralizedEventTable(Lines["GeneralizedEventColumnName"]):
             name: (("event", *["coordinate"][: getattr(self, name).ndim - 1]), getattr(self, name))
             for name in chosen_columns(columns, known, known)
         }
-        return Columns({"event": np.arange(len(self)), "coordinate": np.arange(self.position.shape[1])}, of)
+        return Columns({"event": np.arange(len(self)), "coordinate": np.array(self.coordinates)}, of)
 
     def __repr__(self) -> str:
         coordinates = self.position.shape[1]

@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 
     from visviva.generalized._hamiltonian import Hamiltonian
 
-__all__ = ["at_zeros_of_forces", "forces_at_rest", "states_at_rest"]
+__all__ = ["at_zeros_of_forces", "forces_at_rest", "forces_without_velocity", "states_at_rest"]
 
 #: Newton's steps to momenta at which coordinates rest: one, unless H is more than quadratic in them.
 _STEPS_TO_REST = 4
+#: And so many times that until the velocity there is zero but for no rounding at all.
+_STEPS_TO_EXACT_REST = 3
 #: Momenta that differ by more than this part of what is looked at are others.
 _OTHER_MOMENTA = 1e-3
 
@@ -61,11 +63,32 @@ def forces_at_rest(
     states, known = states_at_rest(system, places, near)
     forces, stiffness = np.full(places.shape, np.nan), np.full((*places.shape, n), np.nan)
     rates, slopes = rates_and_slopes(system, states)
+    finite = np.isfinite(slopes).all(axis=(1, 2))
+    known, rates, slopes = known[finite], rates[finite], slopes[finite]
     softer = -slopes[:, n:, :n]
     if slopes[:, :n, :n].any():
         softer += slopes[:, n:, n:] @ np.linalg.pinv(slopes[:, :n, n:], rcond=SAME) @ slopes[:, :n, :n]
     forces[known], stiffness[known] = rates[:, n:], softer
     return forces, stiffness
+
+
+def forces_without_velocity(
+    system: Hamiltonian, places: NDArray[np.float64], near: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Forces (S, n) at places where velocities come to zero without any rounding; elsewhere they are not numbers."""
+    n = places.shape[1]
+    forces = np.full(places.shape, np.nan)
+    momenta = near
+    for _ in range(_STEPS_TO_EXACT_REST):
+        states, index = states_at_rest(system, places, momenta)
+        rates, _ = rates_and_slopes(system, states)
+        still = ~rates[:, :n].any(axis=1)
+        forces[index[still]] = rates[still, n:]
+        if still.all():
+            break
+        momenta = momenta.copy()
+        momenta[index] = states[:, n:]
+    return forces
 
 
 def at_zeros_of_forces(

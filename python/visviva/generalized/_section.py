@@ -5,21 +5,27 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from visviva._exported import Columns, Exported, chosen_columns
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from visviva.typing import SectionColumnName
 
 __all__ = ["PoincareSection"]
 
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class PoincareSection(Record):
+class PoincareSection(Record, Exported["SectionColumnName"]):
     """Where a motion passes through a section.
 
     Units: those of the system.
@@ -29,6 +35,8 @@ class PoincareSection(Record):
     t : ndarray, shape (C,)
     position, momentum : ndarray, shape (C, n)
     coordinates : tuple of str
+
+    `to_xarray`, `to_pandas` and `to_parquet` hand it over as a table with a row for each passage.
 
     References
     ----------
@@ -40,12 +48,24 @@ class PoincareSection(Record):
     >>> section = vv.systems.henon_heiles().poincare("x", t=100.0)
     >>> section.position.shape[1], float(abs(section.position[:, 0]).max()) < 1e-13
     (2, True)
+    >>> section.to_pandas()["position", "y"].shape == section.t.shape
+    True
     """
 
     t: NDArray[np.float64]
     position: NDArray[np.float64]
     momentum: NDArray[np.float64]
     coordinates: tuple[str, ...]
+
+    _row_axes = ("event",)
+
+    def _exported(self, columns: SectionColumnName | Sequence[SectionColumnName] | None) -> Columns:
+        known: list[SectionColumnName] = ["t", "position", "momentum"]
+        of = {
+            name: (("event", *["coordinate"][: getattr(self, name).ndim - 1]), getattr(self, name))
+            for name in chosen_columns(columns, known, known)
+        }
+        return Columns({"event": np.arange(len(self)), "coordinate": np.array(self.coordinates)}, of)
 
     def __len__(self) -> int:
         return len(self.t)

@@ -14,7 +14,7 @@ import numpy as np
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
 from visviva.generalized._equilibria import Equilibrium
-from visviva.generalized._hamiltonian_at_rest import forces_at_rest, states_at_rest
+from visviva.generalized._hamiltonian_at_rest import forces_at_rest, forces_without_velocity, states_at_rest
 from visviva.generalized._higher_orders import Energy, curvatures, rises
 from visviva.generalized._kinks import with_limits
 from visviva.generalized._level_directions import falls_farther_off, stays
@@ -23,6 +23,7 @@ from visviva.generalized._multiple_zeros import is_simple, left_open
 from visviva.generalized._newton import Scales, rates_and_slopes
 from visviva.generalized._probe import terms_of
 from visviva.generalized._searches import SAME
+from visviva.generalized._stiffness_at_rest import by_differences, is_hidden
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,6 +37,9 @@ __all__ = ["FOUND", "energy_of", "equilibrium_by_momenta", "matrices_of_rates", 
 _ON_THE_AXIS = 1e-7
 #: States are found to this part of their sizes.
 FOUND = SAME
+#: Roundings of what momenta add to a stiffness and take away again, and where, in sizes, others are looked at.
+_ROUNDINGS = 16.0 * float(np.finfo(float).eps)
+_SOME_WAY = 0.1
 
 
 def equilibrium_by_momenta(
@@ -75,9 +79,9 @@ def equilibrium_by_momenta(
     # A pair of zeros that are level is told by half of the digits.
     least = _ON_THE_AXIS * largest if level else 0.0
     frequencies = np.sort(np.abs(values.imag[values.imag > least]))
-    stable = _by_energy_of_rest(system, energy, state, (second, off), size)
-    if stable is not None:
-        return Equilibrium(state[:n], stable, frequencies, state[n:])
+    by_rest = _by_energy_of_rest(system, energy, state, (second, off), size)
+    if by_rest is not None:
+        return Equilibrium(state[:n], by_rest[0], frequencies, state[n:])
     stable = bool((values.real <= _ON_THE_AXIS * largest).all())
     if stable and not (values.real < -_ON_THE_AXIS * largest).all():
         by_energy = _by_energy(energy, state, about, off, size) if about is not None and level else None
@@ -109,10 +113,11 @@ def _by_energy_of_rest(
     state: NDArray[np.float64],
     known: tuple[NDArray[np.float64], NDArray[np.float64]],
     size: NDArray[np.float64],
-) -> bool | None:
+) -> tuple[bool | None] | None:
     """Whether motions stay, by ∂²H and what it may be off (2n, 2n), and the energy where velocities vanish.
 
-    Nothing where these momenta are not known: where ∂²H/∂p² is singular, as far as it is known.
+    None of it where rounding hides it, and nothing at all where these momenta are not known: where ∂²H/∂p² is singular,
+    as far as it is known.
     """
     (second, off), n = known, len(state) // 2
     of_momenta = curvatures(second[n:, n:], off[n:, n:])
@@ -126,18 +131,36 @@ def _by_energy_of_rest(
     def momenta(places: NDArray[np.float64]) -> NDArray[np.float64]:
         return state[n:] + (places - state[:n]) @ by_places.T
 
+    def exact(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        return forces_without_velocity(system, places, momenta(places))
+
+    known_by_momenta = about.stiffness, of_stiffness
+    stiffness, rounding = by_differences(exact, state[:n], size[:n], known_by_momenta)
+    # All that momenta add is told without them, so that it is zero in forces at rest.
+    nothing_added = bool((rounding < of_stiffness)[of_stiffness > 0.0].all())
+
     def slopes(places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        forces, stiffness = forces_at_rest(system, places, momenta(places))
-        return -forces, stiffness
+        forces, found = forces_at_rest(system, places, momenta(places))
+        found[(places == state[:n]).all(axis=1)] = stiffness
+        return -forces, found
 
     def sizes(places: NDArray[np.float64]) -> NDArray[np.float64]:
         states, index = states_at_rest(system, places, momenta(places))
         made_of = np.full(places.shape, np.nan)
+        if nothing_added:
+            made_of[index] = np.abs(rates_and_slopes(system, states)[0][:, n:])
+            return made_of
         by_momenta = np.abs(energy.slopes(states)[1][:, :n, n:])
         made_of[index] = energy.sizes(states)[:, :n] + np.einsum("sij,sj->si", by_momenta, np.abs(states[:, n:]))
         return made_of
 
-    return stays((about.mass, about.damping, about.stiffness, of_stiffness), Energy(slopes, sizes), state[:n], size[:n])
+    at_rest = Energy(slopes, sizes)
+    # What differences cannot tell momenta may hide, though no more of it than the rounding of what they add.
+    farther_off = np.abs(slopes(np.concatenate([state[:n] + _SOME_WAY * np.diag(size[:n]), state[None, :n]]))[1])
+    added = _ROUNDINGS * np.abs(second[:n, n:]) @ np.abs(about.mass) @ np.abs(second[n:, :n])
+    hidden = not nothing_added and is_hidden(about.mass, (stiffness, farther_off), np.fmin(rounding, added))
+    matrices = (about.mass, about.damping, stiffness, rounding)
+    return (stays(matrices, at_rest, state[:n], size[:n], hidden=hidden),)
 
 
 def slopes_at(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -171,6 +171,9 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
         if not isinstance(name, str) or name not in self.system.coordinates:
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
         return self.position[:, self.system.coordinates.index(name)]
+
+    def __iter__(self) -> NoReturn:
+        raise TypeError(f"a {type(self).__name__} is read by its columns: t, position, …; out['name'] is a coordinate")
 
     @property
     def _whose(self) -> GeneralizedSystem:

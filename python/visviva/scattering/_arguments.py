@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,8 @@ from visviva._together import Together
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
 
@@ -37,8 +40,26 @@ def angles(name: str, values: object, limit: float = np.pi) -> NDArray[np.float6
     wrong = (array < 0.0) | (array > limit)
     if wrong.any():
         bound = {np.pi: "[0, π]", np.pi / 2.0: "[0, π/2]"}.get(limit, "[0, ∞)")
-        raise InvalidInput(name, f"expected numbers in {bound}, got {array[wrong][0]}")
+        degrees = of_degrees(np.abs(array).max()) if limit <= np.pi else ""
+        raise InvalidInput(name, f"expected numbers in {bound}, got {array[wrong][0]}{degrees}")
     return array
+
+
+def of_degrees(angle: float) -> str:
+    """Give what a refusal of an angle adds where it looks like one in degrees."""
+    return "; angles are in radians: pass numpy.radians(…) of degrees" if np.pi < abs(angle) <= 360.0 else ""
+
+
+@contextmanager
+def in_radians(**angles: float | None) -> Iterator[None]:
+    """Add what an angle in degrees lacks to the core's refusals of arguments by name."""
+    try:
+        yield
+    except InvalidInput as refusal:
+        angle = angles.get(refusal.argument)
+        if angle is None or not (hint := of_degrees(angle)):
+            raise
+        raise InvalidInput(refusal.argument, refusal.message + hint) from None
 
 
 def flat_broadcast(arguments: dict[str, NDArray[np.float64]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:

@@ -11,7 +11,8 @@ from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
-from visviva.scattering._structure import angles_within, described, orbits
+from visviva.scattering._arguments import angles as checked_angles
+from visviva.scattering._structure import described, orbits
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -81,8 +82,7 @@ def cross_section(
     one_of("frame", frame, _FRAMES)
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
-    limit, bound = (np.pi / 2.0, "[0, π/2]") if frame == "recoil" else (np.pi, "[0, π]")
-    angles = angles_within(angle, limit, bound)
+    angles = checked_angles("angle", angle, np.pi / 2.0 if frame == "recoil" else np.pi)
     ratio = 1.0 if mass_ratio is None else positive("mass_ratio", mass_ratio)
     found = _core.differential_cross_section(
         described(potential), positive("energy", energy), angles.ravel(), frame, ratio
@@ -136,7 +136,7 @@ def total_cross_section(
     if b_max is not None:
         return float(np.pi * positive("b_max", b_max) ** 2)
     if theta_min is not None:
-        least = angles_within(number("theta_min", theta_min), np.pi, "[0, π]", "theta_min")
+        least = checked_angles("theta_min", number("theta_min", theta_min))
         return float(_core.beyond_angle(description, e, least.ravel())[0])
     area = float(_core.beyond_angle(description, e, np.zeros(1))[0])
     radius = _core.scattering_range(description)

@@ -113,7 +113,7 @@ class ExportedTally:
     def to_xarray(self) -> Dataset:
         """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins, with an axis for each quantity.
 
-        Of one quantity of a beam there is ``reachable``, too, and where events differ in weight, by `importance` or a
+        Of a beam there is ``reachable``, too, and where events differ in weight, by `importance` or a
         forced collision, there are ``values`` and ``variances``.
 
         Returns

@@ -12,6 +12,7 @@ from visviva._arrays import number, positive, positive_array
 from visviva._html import Record
 from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
+from visviva.scattering._arguments import in_radians
 from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, potential_of, screened
 from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult
@@ -111,7 +112,8 @@ class Foil(Record):
         }
         for name, value in given.items():
             object.__setattr__(self, name, value)
-        _core.check_foil(self._described(Ion(1.0, 1.0)))
+        with in_radians(minimum_angle=self.minimum_angle):
+            _core.check_foil(self._described(Ion(1.0, 1.0)))
 
     def _described(self, ion: Ion) -> dict[str, Any]:
         """What the core is told."""
@@ -232,7 +234,8 @@ class Foil(Record):
         for axes in asked:
             if len(axes) > 1:
                 raise InvalidInput("tally", f"expected single quantities, got {tuple(name for name, _ in axes)}")
-        return hit._run(asked, n_events, seed, first_event, threads, progress, executor)
+        with in_radians(incidence=hit.incidence, forced_angle=hit.forced_angle):
+            return hit._run(asked, n_events, seed, first_event, threads, progress, executor)
 
     def history(
         self,
@@ -277,9 +280,10 @@ class Foil(Record):
         """
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
         first, _, key = event_range(event, 1, seed)
-        numbers, directions, elements, end = _core.foil_history(
-            foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
-        )
+        with in_radians(incidence=hit.incidence, forced_angle=hit.forced_angle):
+            numbers, directions, elements, end = _core.foil_history(
+                foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
+            )
         fate, angle, energy, depth, weight = end
         return {
             "depth": numbers[:, 0] / 1e4,

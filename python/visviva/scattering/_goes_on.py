@@ -24,6 +24,17 @@ class GoesOn:
 
     events: tuple[tuple[int, int, int], ...]
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            # What is unpickled has no tallies yet.
+            tallies = () if name.startswith("_") else vars(self).get("tallies", ())
+            there = next((repr(tally.name) for tally in tallies if name == tally.name or hasattr(tally, name)), "")
+            own = f"; it is result[{there}]" if there == repr(name) else f"; each tally has one: result[{there}].{name}"
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}{own if there else ''}", name=name, obj=self
+            )
+
     @property
     def next_event(self) -> int:
         """The ``first_event`` of a run that goes on after this one.

@@ -228,6 +228,9 @@ class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
     def _whole(self) -> NDArray[np.uint64]:
         return self.flow
 
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return {"reachable": self.reachable} | super()._columns()
+
     def _about(self) -> dict[str, int]:
         return {"captured": self.captured, "n_events": self.n_events}
 

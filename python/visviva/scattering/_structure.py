@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, positive
+from visviva._arrays import positive
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._parameter import checked_potential
-from visviva.errors import InvalidInput
+from visviva.scattering._arguments import angles as checked_angles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -281,7 +281,7 @@ def impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -
     >>> vv.scattering.impact_parameter(vv.potentials.LennardJones(1.0, 1.0), energy=10.0, angle=0.1).round(6)
     array([1.067861, 1.140732, 1.501064])
     """
-    angles = angles_within(angle, np.pi, "[0, π]")
+    angles = checked_angles("angle", angle)
     counts, columns = _core.scattering_branches(described(potential), positive("energy", energy), angles.ravel())
     table = np.full((angles.size, max(counts, default=0)), np.nan)
     table[np.arange(table.shape[1]) < np.array(counts)[:, None]] = columns[0]
@@ -301,11 +301,3 @@ def orbits(potential: object, energy: NDArray[np.float64]) -> list[list[tuple[fl
 def described(potential: object) -> dict[str, object]:
     """Check that it is a potential, and write it for the core."""
     return checked_potential("potential", potential)._to_core()
-
-
-def angles_within(angle: object, limit: float, bound: str, name: str = "angle") -> NDArray[np.float64]:
-    """Check angles from 0 to a limit."""
-    angles = float_array(name, angle, None)
-    if (wrong := (angles < 0.0) | (angles > limit)).any():
-        raise InvalidInput(name, f"expected numbers in {bound}, got {angles[wrong][0]}")
-    return angles
