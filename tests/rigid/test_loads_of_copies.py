@@ -194,3 +194,23 @@ def test_beside_a_compiled_torque(tmp_path: Path) -> None:
     for name in ("function", "address", "body"):
         with pytest.raises(vv.InvalidInput, match=f"got '{name}': bodies, axes and functions are the same in all"):
             scene.ensemble(parameters={"CompiledTorque": {name: [motor, motor]}})
+
+
+def test_what_other_copies_have_decides_nothing() -> None:
+    """Damping of one was asked of another, which then took another method; what is 0 in a copy left its terms in another
+    order beside springs."""
+    ball = vv.RigidBody(1.0, [1.0, 1.0, 1.0], angular_velocity=[0.1, 0.2, 0.3])
+    spring = vv.AttachedSpring(0, [0.1, 0.2, 0.5], stiffness=1.0, length=1.0, anchor=[0.0, 0.0, 6.0])
+    damped = vv.Scene(ball, spring).ensemble(parameters={spring: {"damping": [0.1, 0.0]}})
+    body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 0.7, 0.3])
+    torque = vv.AppliedTorque([0.0, 0.0, 1.0], frame="body")
+    springs = [
+        vv.AttachedSpring(0, [0.1, 0.2, 0.3], stiffness=1.0, length=1.0, anchor=[0.0, 0.0, 6.0]),
+        vv.AttachedSpring(0, [0.3, 0.2, -0.3], stiffness=1.3, length=1.0, anchor=[0.0, 5.0, 6.0]),
+    ]
+    turned = vv.Scene(body, *springs, torque).ensemble(parameters={torque: {"torque": [[0.1, 0.3, 0.2], [0, 0, 0.2]]}})
+    for copies, method in ((damped, "auto"), (damped, "taylor"), (turned, "taylor"), (turned, "auto")):
+        together = copies.run(t=[0.3, 0.777], method=method)
+        for copy in range(2):
+            alone = copies[copy].run(t=[0.3, 0.777], method=method)
+            assert np.array_equal(alone.angular_velocity, together.angular_velocity[copy]), (method, copy)
