@@ -197,8 +197,7 @@ def test_beside_a_compiled_torque(tmp_path: Path) -> None:
 
 
 def test_what_other_copies_have_decides_nothing() -> None:
-    """Damping of one was asked of another, which then took another method; a torque that is 0 in a copy, beside springs, left
-    its terms in another order."""
+    """Damping of one was asked of another, which took another method; a torque of 0 left terms in another order."""
     ball = vv.RigidBody(1.0, [1.0, 1.0, 1.0], angular_velocity=[0.1, 0.2, 0.3])
     spring = vv.AttachedSpring(0, [0.1, 0.2, 0.5], stiffness=1.0, length=1.0, anchor=[0.0, 0.0, 6.0])
     damped = vv.Scene(ball, spring).ensemble(parameters={spring: {"damping": [0.1, 0.0]}})
