@@ -57,7 +57,7 @@ QUANTITIES = ("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy"
 def test_bins_that_are_told_are_those_of_all_impact_parameters(energy: float, inside: float, outside: float) -> None:
     angles = folded(energy)
     for b_max, rainbow_is_beyond in ((inside, True), (outside, False)):
-        result = run(energy, b_max, {name: 8 for name in QUANTITIES} | {PAIR: (8, 8)})
+        result = run(energy, b_max, dict.fromkeys(QUANTITIES, 8) | {PAIR: (8, 8)})
         known = {}
         for name in QUANTITIES:
             tally = result[name]
@@ -65,7 +65,7 @@ def test_bins_that_are_told_are_those_of_all_impact_parameters(energy: float, in
             value, error = tally.cross_section()
             known[name] = np.isfinite(value)
             assert (known[name] == (tally.reachable == 1.0)).all()
-            # Five standard deviations of some 200 bins, one in 10⁴; the quadrature is known to a few steps at each edge.
+            # Five standard deviations of some 200 bins, one in 10⁴; the quadrature is known to a few steps at edges.
             off = np.abs(value * tally._measure() - area)
             assert (off <= 5.0 * error * tally._measure() + 1e-3 * area)[known[name]].all()
             # Where nothing is scattered to at all, no energy below E (m₂ − m₁)²/(m₁ + m₂)², the disc knows that.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from visviva.scattering._beam import Beam
 
-    Reach: TypeAlias = tuple[NDArray[np.float64], tuple[float, float]]
+    _Reach: TypeAlias = tuple[NDArray[np.float64], tuple[float, float]]
 
 __all__ = ["beyond", "less_what_is_beyond"]
 
@@ -43,8 +43,8 @@ _CUT = 6.0
 
 
 def less_what_is_beyond(
-    beam: Beam, axes: list[tuple[str, NDArray[np.float64]]], told: list[Reach], hidden: dict[float, float]
-) -> list[Reach]:
+    beam: Beam, axes: list[tuple[str, NDArray[np.float64]]], told: list[_Reach], hidden: dict[float, float]
+) -> list[_Reach]:
     """What is reached of bins of quantities, and which values are covered, without what comes from beyond, too.
 
     `hidden` is that of `beyond`; `told` what the core says, of which nothing is added to.
@@ -67,7 +67,7 @@ def less_what_is_beyond(
     return told
 
 
-def _both(one: Reach, other: Reach) -> Reach:
+def _both(one: _Reach, other: _Reach) -> _Reach:
     """Of bins what two know: those that only one does are not averaged over a part."""
     (parts, (low, high)), (others, (from_, to)) = one, other
     low, high = max(low, from_), min(high, to)

@@ -24,10 +24,9 @@ from visviva.scattering._tally import Tally
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.potentials import Potential
-    from visviva.scattering._beyond import Reach
     from visviva.scattering._bins import Axes, Bins
     from visviva.typing import Executor, Progress, TallyName
 
@@ -264,7 +263,10 @@ def _run(
 
 
 def _tally(
-    column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...], single: Reach | None
+    column: tuple[Any, ...],
+    beam: Beam,
+    events: tuple[tuple[int, int, int], ...],
+    single: tuple[NDArray[np.float64], tuple[float, float]] | None,
 ) -> Tally | JointTally:
     names, edges, flow, captured, _, by_stratum = column
     if single is None:
