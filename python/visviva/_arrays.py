@@ -41,8 +41,12 @@ _FLOAT64 = np.dtype(np.float64)
 _SURELY_SUMMED = 1e280
 # Made once: a union of types takes longer to make than to ask.
 _WHOLE, _OF_NUMPY = int | np.integer, np.ndarray | np.generic
-#: "1 kg", "-9.81m/s²", "5e3 km" and "1e-3µm", but not "1e5" or "1_000", which are numbers as they are.
-_NUMBER_WITH_UNIT = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*(?![eE][-+]?\d)([^\W\d_]|[°%])")
+#: "1 kg", "-9.81m/s²", "5e3 km" and "1e-3µm", but not "1e5" or "1_000", which are numbers as they are, nor "1d3",
+#: "0x10", "1j" and "1E", which are meant to be some.
+_NUMBER_WITH_UNIT = re.compile(
+    r"\s*[-+]?(?!0[xXoObB][\da-fA-F])(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
+    r"(?![dD][-+]?\d|[eEjJ]\s*$)\s*(?![eE][-+]?\d)([^\W\d_]|[°%])"
+)
 _ADVICE = {
     "b": "a mask is not a number; pass x.astype(float) if zeros and ones are meant",
     "c": "pass x.real if the imaginary part is to be dropped",

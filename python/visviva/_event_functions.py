@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from visviva._keywords import check_call, takes
+from visviva._text import note_once
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def told(which: int, function: Callable[..., SupportsFloat]) -> Callable[..., Su
         try:
             return function(t, *state)
         except Exception as error:
-            error.add_note(f"raised by events[{which}], the function {call.__qualname__}, at t = {t!r}")
+            note_once(error, f"raised by events[{which}], the function {call.__qualname__}, at t = {t!r}")
             raise
 
     call.__qualname__ = name_of(function)

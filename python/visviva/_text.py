@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["article", "count", "short_repr", "table"]
+__all__ = ["article", "count", "note_once", "short_repr", "table"]
 
 
 def count(number: int, one: str, many: str | None = None) -> str:
@@ -35,6 +35,20 @@ def article(noun: str) -> str:
     ('a list', 'an int', 'an EnsembleScene')
     """
     return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"  # a UniformField
+
+
+def note_once(error: BaseException, note: str) -> None:
+    """Add a note to an error, if it has not got that from being raised before.
+
+    Examples
+    --------
+    >>> from visviva._text import note_once
+    >>> error = ValueError("no")
+    >>> note_once(error, "here"), note_once(error, "here"), error.__notes__
+    (None, None, ['here'])
+    """
+    if note not in getattr(error, "__notes__", ()):
+        error.add_note(note)
 
 
 def table(record: DataclassInstance, leave_out: tuple[str, ...] = ()) -> str:

@@ -194,7 +194,8 @@ class EnsembleConservation(Shown):
         failed = int((~np.isin(self.status, _WHOLE)).sum())
         upto = f", of which {failed} failed, told up to there" if failed else ""
         title = f"Conservation in {count(len(self.virial), 'copy', 'copies')}{upto}: the largest drifts"
-        return Sheet(title, rows, header)
+        hints = dict.fromkeys(hint for each in self._copies for hint in each._hints)
+        return Sheet(title, rows, header, "\n".join(hints))
 
 
 def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:

@@ -75,6 +75,59 @@ def test_a_level_place_is_no_curve(potential: Callable[[Any], Any]) -> None:
         assert [each.continuum for each in found] == [0] * len(found)
 
 
+def test_where_lines_cross_is_a_place_on_curves_and_no_surface() -> None:
+    """x²y² was told as a surface; away from the origin as no curve, and by the Lagrangian not at all."""
+    for corner in ((0.0, 0.0), (1.0, -0.5)):
+        for form in both_forms(lambda q, at=corner: (q[0] - at[0]) ** 2 * (q[1] - at[1]) ** 2):
+            (found,) = form.equilibria()
+            # A zero of third order of the forces: known to the third root of rounding.
+            assert found.position == pytest.approx(corner, rel=0.0, abs=1e-5)
+            assert (found.stable, found.continuum) == (True, 1)
+
+
+def test_the_crossing_of_a_lemniscate_is_on_it() -> None:
+    """Its lines cross at ±45°, between the axes; in the middles of the two loops, at x = ±1, are hills."""
+    for form in both_forms(lambda q: ((q[0] ** 2 + q[1] ** 2) ** 2 - 2 * (q[0] ** 2 - q[1] ** 2)) ** 2):
+        found = form.equilibria()
+        hills = [each for each in found if each.continuum == 0]
+        assert [each.stable for each in hills] == [False, False]
+        # Simple zeros are told to 1e-8.
+        assert [float(each.position[0]) for each in hills] == pytest.approx([-1.0, 1.0], rel=1e-8, abs=0.0)
+        on = np.array([each.position for each in found if each.continuum == 1])
+        square = (on**2).sum(axis=1)
+        # g = 0, of which forces tell g·g′ to rounding: near the crossing, where g′ vanishes, to 1e-8 of the size.
+        np.testing.assert_allclose(square**2, 2.0 * (on[:, 0] ** 2 - on[:, 1] ** 2), rtol=1e-8, atol=1e-8)
+        assert (square == 0.0).sum() == 1
+
+
+def test_along_a_valley_that_falls_slowly_there_is_one_place() -> None:
+    """V = (y − x²)² + 1e-6 x²: forces of 1e-3 at (1006, 1013211) were taken for round-off. ω² are 2e-6 and 2."""
+    for form in both_forms(lambda q: (q[1] - q[0] ** 2) ** 2 + 1e-6 * q[0] ** 2):
+        (found,) = form.equilibria()
+        assert (found.position.tolist(), found.stable, found.continuum) == ([0.0, 0.0], True, 0)
+        assert found.frequencies == pytest.approx(np.sqrt([2e-6, 2.0]), rel=1e-12, abs=0.0)
+
+
+def test_two_rings_are_two_dozen_places() -> None:
+    """Of which 35 were told; between the rings and in their middles nothing is level."""
+
+    def potential(q: Any) -> Any:
+        return ((q[0] - 2) ** 2 + q[1] ** 2 - 1) ** 2 * ((q[0] + 2) ** 2 + q[1] ** 2 - 1) ** 2
+
+    for form in both_forms(potential):
+        found = form.equilibria()
+        rings = Counter((each.continuum, each.stable, bool(each.position[0] > 0.0)) for each in found if each.continuum)
+        assert rings == {(1, True, True): 12, (1, True, False): 12}
+        assert [each.stable for each in found if not each.continuum] == [False] * 3
+
+
+def test_a_thin_ellipse_is_a_dozen_places_and_stable_everywhere() -> None:
+    """Of a thousandth of its length 24 places were told, one of which was unstable by 1e-13 of its curvature."""
+    for form in both_forms(lambda q: (q[0] ** 2 + (q[1] / 1e-3) ** 2 - 1) ** 2):
+        found = form.equilibria()
+        assert Counter((each.continuum, each.stable) for each in found) == {(0, False): 1, (1, True): 12}
+
+
 def test_a_circle_on_a_sphere_is_a_dozen_places() -> None:
     """V = (z − ½)² on the unit sphere: 925 of the circle z = ½ were told. ω² = 2 (1 − z²) = 3/2; poles are hills."""
     system = vv.Lagrangian(

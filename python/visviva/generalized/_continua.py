@@ -1,7 +1,6 @@
-"""Equilibria that fill curves and surfaces: how they go on from each place, and which few stand for one of those.
+"""Equilibria that fill curves and surfaces: which of them are on the same one, and which few stand for it.
 
-The one idea: from a place on a curve a step along the direction that forces leave level, brought back by Newton's
-method, ends in balance, about as far off as the step was. So places are joined, too, along a row of steps between them.
+The one idea: what goes on from a place goes on to the next, so places are joined along a row of steps between them.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva.generalized._newton import steps_to_zeros
+from visviva.generalized._ground import AWAY, LevelGround
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,25 +20,18 @@ if TYPE_CHECKING:
 
     from visviva.generalized._equilibria import Equilibrium
 
-    _Forces = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
-    _Balanced = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
-
 __all__ = ["Ground", "GroundOnConstraints", "some_of_each"]
 
 #: So many places stand for a whole curve.
 _SOME = 12
-#: A direction is level where its stiffness is this part of the largest.
-_LEVEL = 1e-6
-#: Two steps along it, in sizes of places: none of both may lead back, as it does to an isolated place that is level.
-_ASIDE = (0.02, 0.007)
-#: What is nearer to zero, in sizes of places, may be what rounding has left of it.
-_TOO_NEAR = 1e-4
-#: Newton's steps back to the ground, and how far off, in parts of a step, it may lead.
-_STEPS = 8
-_AWAY = 0.5
 #: Places between two that are looked at, and how much farther than these one may be from the next.
 _BETWEEN = 8
 _NO_JUMP = 2.5
+#: What leads from one place to another along a curve is a row of steps, each so much of the distance, and so many at
+#: most; there the other is ahead, and no more than this part of what is left aside.
+_STEPS_BETWEEN = 12
+_MOST_STEPS = 60
+_BESIDE = 0.3
 #: A curve has places this part of a size apart.
 _EXTENDED = 1e-2
 _MOST_DISTANCES = 1_000_000
@@ -47,62 +39,11 @@ _MOST_DISTANCES = 1_000_000
 _MOST_ARCS = 48
 
 
-class Ground:
-    """The places of balance of a system: forces (S, n) there with minus their slopes, and whether they are round-off.
+class Ground(LevelGround):
+    """The places of balance of a system, and the curves and surfaces that they are on."""
 
-    Only the coordinates that move are looked at: nothing depends on the others.
-    """
-
-    def __init__(self, forces: _Forces, balanced: _Balanced, moving: NDArray[np.bool_]) -> None:
-        self._forces, self._balanced, self._moving = forces, balanced, moving
-
-    def goes_on(self, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.intp]:
-        """In how many directions (R,) equilibria go on from places (R, n) among others of a size (n).
-
-        Steps go with that size, or with how far off the place itself is, as on a ring that is small beside others.
-        """
-        found = np.zeros(len(places), dtype=np.intp)
-        if not len(places) or not self._moving.any():
-            return found
-        with np.errstate(all="ignore"):
-            stiffness = self._forces(places)[1][:, self._moving][:, :, self._moving]
-        known = np.flatnonzero(np.isfinite(stiffness).all(axis=(1, 2)))
-        units = size[self._moving]
-        _, values, vectors = np.linalg.svd(stiffness[known] * units * units[:, None])
-        for level in range(values.shape[1]):
-            where = values[:, level] <= _LEVEL * values[:, 0]
-            if not where.any():
-                continue
-            ahead = np.zeros((int(where.sum()), places.shape[1]))
-            ahead[:, self._moving] = vectors[where, level] * units
-            from_here = places[known[where]]
-            own = np.abs(from_here / size).max(axis=1, keepdims=True)
-            ahead_by = (ahead, np.where(own < _TOO_NEAR, 1.0, own) * ahead)
-            sides = [self._lead_on(from_here, sign * by, size) for sign in (1.0, -1.0) for by in ahead_by]
-            found[known[where]] += np.any(sides, axis=0)
-        return found
-
-    def _lead_on(
-        self, places: NDArray[np.float64], ahead: NDArray[np.float64], size: NDArray[np.float64]
-    ) -> NDArray[np.bool_]:
-        """Whether steps ahead (R, n) from places end beside them, and no nearer than that."""
-        on = np.ones(len(places), dtype=bool)
-        for part in _ASIDE:
-            step = part * ahead
-            ends, there = self._brought_back(places + step)
-            length = np.abs(step / size).max(axis=1)
-            on &= there & (np.abs((ends - places - step) / size).max(axis=1) <= _AWAY * length)
-        return on
-
-    def _brought_back(self, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Where Newton's method leads from places (R, n), and whether it is in balance there."""
-        places = places.copy()
-        with np.errstate(all="ignore"):
-            for _ in range(_STEPS):
-                forces, stiffness = self._forces(places)
-                step = steps_to_zeros(forces[:, self._moving], stiffness[:, self._moving][:, :, self._moving])
-                places[:, self._moving] += np.where(np.isfinite(step), step, 0.0)
-            return places, self._balanced(places)
+    #: Whether stiffnesses tell which directions are level.
+    _is_level_known = True
 
     def curves(self, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.intp]:
         """Of places (R, n) that lie on curves or surfaces which of these each is on (R,), numbered from 0."""
@@ -141,8 +82,11 @@ class Ground:
             edges.append((one[at[0]], other[at[1]]))
         ends = np.array(edges)
         names = np.array(arcs)
-        joined = self._are_joined(places[ends[:, 0]], places[ends[:, 1]], size).tolist()
-        for (to, was), same in zip(pairs, joined, strict=True):
+        joined = self._are_joined(places[ends[:, 0]], places[ends[:, 1]], size)
+        apart = np.flatnonzero(~joined)
+        if self._is_level_known:
+            joined[apart] = self._walked(places[ends[apart, 0]], places[ends[apart, 1]], size)
+        for (to, was), same in zip(pairs, joined.tolist(), strict=True):
             if same:
                 names[names == names[was]] = names[to]
         return np.unique(names[numbers], return_inverse=True)[1]
@@ -161,6 +105,39 @@ class Ground:
         joined &= np.abs((second - before) / size).max(axis=1) <= most
         return joined
 
+    def _walked(
+        self, first: NDArray[np.float64], second: NDArray[np.float64], size: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """Whether a curve leads from places (R, n) to others, by short steps along it."""
+        joined: NDArray[np.bool_] = np.zeros(len(first), dtype=bool)
+        going: NDArray[np.intp] = np.arange(len(first))
+        heading = (second - first) / size
+        part = np.abs(heading).max(axis=1, keepdims=True) / _STEPS_BETWEEN
+        for _ in range(_MOST_STEPS):
+            if not len(going):
+                break
+            known, _, vectors = self._level(first, size)
+            going, (first, second, heading, part) = (
+                going[known],
+                (each[known] for each in (first, second, heading, part)),
+            )
+            ahead = vectors[:, -1]
+            ahead = np.copysign(1.0, (ahead * heading).sum(axis=1, keepdims=True)) * ahead
+            ahead /= np.abs(ahead).max(axis=1, keepdims=True)
+            step = part * ahead * size
+            ends, there = self._brought_back(first + step)
+            there &= (np.abs((ends - first - step) / size) <= AWAY * part).all(axis=1)
+            left = (second - first) / size
+            # What is beside the way is on another curve.
+            aside = left - ahead * ((left * ahead).sum(axis=1) / (ahead * ahead).sum(axis=1))[:, None]
+            far = np.abs(left).max(axis=1)
+            come = (far <= part[:, 0]) & (np.abs(aside).max(axis=1) <= _BESIDE * far)
+            joined[going[come]] = True
+            on = there & ~come
+            heading = (ends - first)[on] / size
+            going, first, second, part = going[on], ends[on], second[on], part[on]
+        return joined
+
     def some(self, places: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which of places (R, n) are told: of a curve or a surface that has many of them some, far from each other."""
         told = np.ones(len(places), dtype=bool)
@@ -176,6 +153,8 @@ class Ground:
 
 class GroundOnConstraints(Ground):
     """Places of balance on constraints: `reached` gives those that Newton's method comes to from some, in any order."""
+
+    _is_level_known = False
 
     def __init__(self, reached: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None:
         self._reached = reached
@@ -219,7 +198,11 @@ def some_of_each(ground: Ground, found: list[Equilibrium]) -> list[Equilibrium]:
         told = np.flatnonzero(ground.some(places, size)).tolist()
         # A search among larger places has seen no curve in a small one.
         on = ground.goes_on(places[told], size).tolist()
-        kept += [replace(alike[at], continuum=max(alike[at].continuum, own)) for at, own in zip(told, on, strict=True)]
+        holds = ground.holds(places[told], size).tolist()
+        for at, own, each in zip(told, on, holds, strict=True):
+            continuum = max(alike[at].continuum, own)
+            if each or not continuum:
+                kept.append(replace(alike[at], continuum=continuum))
     return kept
 
 

@@ -74,8 +74,8 @@ class Equilibrium(Record):
         The momenta there, which need not be zero.
     continuum : int
         In how many directions other equilibria go on from there: 0 of one by itself, 1 on a curve of them, 2 on a
-        surface. What may be moved along coordinates that nothing depends on is not counted. On constraints only a
-        search without `near` tells it.
+        surface, and 1 where curves cross, or surfaces. What may be moved along coordinates that nothing depends on is
+        not counted. On constraints only a search without `near` tells it.
 
     References
     ----------
@@ -159,7 +159,8 @@ def _found(system: Lagrangian, starts: NDArray[np.float64], most: NDArray[np.flo
     ground, places = _ground(system), np.array(_once(reached, starts, distinguishing)).reshape(-1, n)
     if most is not None:
         places = places[ground.some(places, size)]
-    for place, goes_on in zip(places, ground.goes_on(places, size).tolist(), strict=True):
+    places, directions = ground.judged(places, size)
+    for place, goes_on in zip(places, directions.tolist(), strict=True):
         if _mass_is_singular(system, place):
             without_mass.append(place)
             continue

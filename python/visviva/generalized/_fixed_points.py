@@ -141,10 +141,11 @@ def _found(system: Hamiltonian, states: NDArray[np.float64], most: NDArray[np.fl
     ground, every = Ground(asked.forces, asked.balanced, distinguishing[:n]), np.array(places).reshape(-1, 2 * n)
     if most is not None:
         every = every[ground.some(every[:, :n], size[:n])]
+    every, directions = ground.judged(every, size[:n])
     told = [_of_lagrangian(of, place, size[:n]) for place in every]
     return [
         replace(equilibrium_by_momenta(system, energy, place, scales) if each is None else each, continuum=goes_on)
-        for each, place, goes_on in zip(told, every, ground.goes_on(every[:, :n], size[:n]).tolist(), strict=True)
+        for each, place, goes_on in zip(told, every, directions.tolist(), strict=True)
     ]
 
 

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["BENT", "FUNCTIONS", "KNOWN", "LEAPS", "MADE_OF", "NUMPY", "OF_FLOATS", "SWITCH", "WIDTH"]
+__all__ = [
+    "BENT",
+    "FUNCTIONS",
+    "KNOWN",
+    "LEAPS",
+    "MADE_OF",
+    "NUMPY",
+    "OF_FLOATS",
+    "OF_SYMPY",
+    "SWITCH",
+    "UNKNOWN",
+    "WIDTH",
+]
 
 FUNCTIONS = (
     "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
@@ -55,4 +67,10 @@ MADE_OF = {
 #: All of them, as a message lists them.
 KNOWN = ", ".join(
     (*FUNCTIONS, "cbrt", "exp2", "expm1", "log1p", "log2", "log10", "deg2rad", "rad2deg", "hypot", "arctan2")
+)
+UNKNOWN = f"is not known to the compiled core; known: {KNOWN}"
+#: What SymPy asks of, to see whether it is an array.
+OF_SYMPY = (
+    "expected functions of NumPy, such as np.cos, got one that takes its argument for an array or a symbol, as "
+    f"sympy.cos does; known: {KNOWN}"
 )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, SupportsFloat, SupportsIndex, T
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva._text import note_once
 from visviva.errors import InvalidInput
 from visviva.generalized._known_functions import (
     BENT,
@@ -20,7 +21,9 @@ from visviva.generalized._known_functions import (
     MADE_OF,
     NUMPY,
     OF_FLOATS,
+    OF_SYMPY,
     SWITCH,
+    UNKNOWN,
     WIDTH,
 )
 
@@ -323,7 +326,7 @@ class Expression:
             return made
         if name.startswith("_"):
             raise AttributeError(name)
-        raise self._refused(f"function {name} is not known to the compiled core; known: {KNOWN}")
+        raise self._refused(OF_SYMPY if name == "flat" else f"function {name} {UNKNOWN}")
 
 
 def not_compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -352,7 +355,7 @@ def call_with_expressions(
             raise InvalidInput(argument, f"{error}: positions and velocities have {last}") from error
         if not isinstance(error, TypeError) or not any(word in str(error) for word in ("ufunc", "Expression")):
             name = getattr(function, "__qualname__", type(function).__qualname__)
-            error.add_note(f"{argument}: raised in {name}, which is called with expressions in the place of numbers")
+            note_once(error, f"{argument}: raised in {name}, which is called with expressions in the place of numbers")
             raise
         name = str(error).partition("ufunc '")[2].partition("'")[0]
         cure = f"; {LEAPS[name]}" if name in LEAPS else ""

@@ -131,7 +131,9 @@ def where_something_acts(
 
     Where a potential underflows all is in balance, and no place is an equilibrium more than another.
     """
-    steps = _ASIDE * np.eye(coordinates, places.shape[1])
+    # Along an axis there is none where lines of equilibria cross that are parallel to the axes.
+    between = np.pad(np.cos(np.arange(1.0, coordinates + 1.0)), (0, places.shape[1] - coordinates))
+    steps = _ASIDE * np.vstack([np.eye(coordinates, places.shape[1]), between])
     sides = ([_largest(forces(places + sign * step))[0] for sign in (1.0, -1.0)] for step in steps)
     beside = [np.minimum(*both) for both in sides]
     acts: NDArray[np.bool_] = np.maximum(_largest(forces(places))[1], np.max(beside, axis=0)) > _UNDERFLOWN

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import float_array, positive
@@ -180,7 +180,8 @@ class Beam(Record):
         Radius of the disc of impact parameters.
     smallest_angle : float
         The deflection at the edge of the disc, in the center-of-mass frame, or a greater one beyond it: where
-        deflections fall with the impact parameter, no event is scattered by less.
+        deflections fall with the impact parameter, no event is scattered by less. It follows from the rest and is not
+        compared.
     tables : tuple of int
         The hash of the event table of each energy, from which angles are taken; of a spread of energies, of those
         between which is interpolated; none of a Coulomb target.
@@ -210,7 +211,7 @@ class Beam(Record):
     beam_energy: float | Spectrum
     masses: tuple[float, float]
     b_max: float
-    smallest_angle: float
+    smallest_angle: float = field(compare=False)
     tables: tuple[int, ...] = ()
     energy_spread: Spread | None = None
     divergence: Spread | None = None

@@ -14,6 +14,7 @@ from visviva._made_by import made_by
 from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
+from visviva.scattering._beyond import beyond, less_what_is_beyond
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import OfStrata, intervals
 from visviva.scattering._tally import CrossSection, area_of_events, measure, told
@@ -130,7 +131,8 @@ class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
         """Of each bin the part whose impact parameters all lie on the disc, shape (B₁, B₂), without dimension.
 
         A place is reached if either of its two values is: 1 of a bin of which either axis is reached whole, between 0
-        and 1 where the edge of the disc cuts both. `Tally.reachable` tells that of one quantity.
+        and 1 where the edge of the disc cuts both. `Tally.reachable` tells that of one quantity, and what branches of
+        the deflection function beyond the disc do to it.
 
         Examples
         --------
@@ -149,12 +151,13 @@ class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
     def _parts(self, *, whole: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Of the bins along each axis the part that is reached, or the part of which a cross section is told."""
         # One event: what is reached hangs on the beam and the edges alone.
-        single: list[list[tuple[str, Any]]] = [[axis] for axis in self._axes()]
-        beam = described(self.beam)
+        axes = list(self._axes())
+        single: list[list[tuple[str, Any]]] = [[axis] for axis in axes]
         columns = _core.monte_carlo(
-            beam=beam, n_events=1, seed=0, first_event=0, tallies=single, threads=1, progress=None
+            beam=described(self.beam), n_events=1, seed=0, first_event=0, tallies=single, threads=1, progress=None
         )[4]
-        parts = [np.zeros(0) if column[4] is None else column[4][0] for column in columns]
+        reached = [(np.zeros(0), (0.0, 0.0)) if column[4] is None else column[4] for column in columns]
+        parts = [part for part, _ in less_what_is_beyond(self.beam, axes, reached, beyond(self.beam))]
         if whole:
             parts = [told(name, part, self.beam) for name, part in zip(self.name, parts, strict=True)]
         return parts[0][:, None], parts[1][None, :]

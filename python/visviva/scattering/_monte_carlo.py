@@ -12,6 +12,7 @@ from visviva._keywords import known_keywords
 from visviva._parameter import checked_potential
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
+from visviva.scattering._beyond import beyond, less_what_is_beyond
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
 from visviva.scattering._importance import LargeAngles, Strata, strata_of
@@ -23,7 +24,7 @@ from visviva.scattering._tally import Tally
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.potentials import Potential
     from visviva.scattering._bins import Axes, Bins
@@ -246,13 +247,28 @@ def _run(
     def made(came: tuple[Any, ...], events: tuple[tuple[int, int, int], ...]) -> MonteCarlo:
         _, _, smallest, tables, columns = came
         found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
-        return MonteCarlo(found, events, tuple(_tally(column, found, events) for column in columns))
+        singles = [column for column in columns if column[4] is not None]
+        hidden = beyond(found)
+        if len(hidden) == 1 and not isinstance(beam.beam_energy, Spectrum):
+            found = replace(found, smallest_angle=max(smallest, *hidden.values()))
+        axes = [(names[0], edges[0]) for names, edges, *_ in singles]
+        told = iter(less_what_is_beyond(found, axes, [column[4] for column in singles], hidden))
+        return MonteCarlo(
+            found,
+            events,
+            tuple(_tally(column, found, events, None if column[4] is None else next(told)) for column in columns),
+        )
 
     return counted("monte_carlo", request, event_range(first_event, n_events, seed), threads, progress, executor, made)
 
 
-def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:
-    names, edges, flow, captured, single, by_stratum = column
+def _tally(
+    column: tuple[Any, ...],
+    beam: Beam,
+    events: tuple[tuple[int, int, int], ...],
+    single: tuple[NDArray[np.float64], tuple[float, float]] | None,
+) -> Tally | JointTally:
+    names, edges, flow, captured, _, by_stratum = column
     if single is None:
         return JointTally(tuple(names), tuple(edges), flow, captured, beam, events, by_stratum)
     reachable, covered = single

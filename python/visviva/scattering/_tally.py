@@ -108,7 +108,8 @@ class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arra
     reachable : ndarray, shape (B,)
         For each bin the part of it (of its solid angle for angles, else of its width) whose impact parameters all
         lie on the disc: 1 for a bin that is reached whole, 0 for one that is not, between for one that the edge of
-        the disc cuts.
+        the disc cuts. What a rainbow, a glory or orbits beyond the disc lead to is not reached, and bins that hold any
+        of it are 0, however much comes from within.
     covered : tuple of float
         The values (low, high) whose impact parameters all lie on the disc.
     beam : Beam
@@ -274,7 +275,8 @@ class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arra
 
         The disc ends at ``b_max``, so what lies beyond is missing near the forward direction, unless it ends where the
         potential does. A bin that is cut there
-        is averaged over its reachable part, which `reachable` tells; a bin that is not reached is NaN. Of a heavy
+        is averaged over its reachable part, which `reachable` tells; a bin that is not reached is NaN, one that other
+        branches of the deflection function lead to from beyond the disc, as well as those within, too. Of a heavy
         projectile (m₁ > m₂) two impact parameters lead to one laboratory angle: below ``covered[0]`` one of them is
         beyond the disc, and bins that begin there are NaN, the cut one too.
 
