@@ -95,20 +95,7 @@ class Force(Declared):
         """The force with indices in place of the names of bodies, as a scene of so many keeps it."""
         named = [p for p in self._parameters if p.kind == "indices" and isinstance(getattr(self, p.name), str | tuple)]
         found = {p.name: p.resolved(getattr(self, p.name), names, count) for p in named}
-        self._check_counts(count)
         return type(self)(**(self._values() | found)) if found else self
-
-    def _check_counts(self, count: int) -> None:
-        """Refuse numbers that are neither one for all bodies nor one for each.
-
-        The core does, too, when it runs; here that is refused where it was written.
-        """
-        if any(p.kind == "indices" for p in self._parameters):
-            return  # of bodies or pairs that are listed there are as many as of them, which the core counts
-        for name in (p.name for p in self._parameters if p.kind == "numbers"):
-            came = np.size(getattr(self, name))
-            if came not in (1, count):
-                raise InvalidInput(name, f"expected one number, or one for each of {count} bodies, got {came}")
 
     def rotated(self, rotation: ArrayLike) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).

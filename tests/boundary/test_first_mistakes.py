@@ -101,9 +101,9 @@ def test_texts_without_a_unit_are_told_of_none(text: str) -> None:
         ("coefficient", vv.QuadraticDrag([0.1, 0.1, 0.1])),
     ],
 )
-def test_numbers_of_bodies_that_are_not_there_are_refused_by_the_scene(argument: str, force: vv.forces.Force) -> None:
-    with pytest.raises(vv.InvalidInput, match=rf"^{argument}: expected one number, or one for each of 2 bodies, got 3"):
-        vv.Scene(PAIR, force)
+def test_numbers_of_bodies_that_are_not_there_are_refused(argument: str, force: vv.forces.Force) -> None:
+    with pytest.raises(vv.InvalidInput, match=rf"^{argument}: expected .*2 bodies, got 3"):
+        vv.Scene(PAIR, force).plan(t=0.1)
     third = vv.RigidBody(1.0, [1.0, 1.0, 1.0], position=[0.0, 3.0, 0.0])
     assert vv.Scene(PAIR, third, force).run(t=0.1).status == vv.Status.OK
 

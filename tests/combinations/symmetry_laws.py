@@ -13,6 +13,7 @@ from running import execute
 
 import visviva as vv
 from visviva import _core
+from visviva._own_forces import Acting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +33,8 @@ def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: fl
     if not case.alone:
         names = ("mass", "position", "velocity", "radius")
         stacked = {name: np.stack([getattr(scene.particles, name) for scene in scenes]) for name in names}
-        start = scenes[0].ensemble(**stacked)._own(tuple(scene.forces for scene in scenes))
+        acting = Acting(tuple(scene.forces for scene in scenes), tuple(scene.body_forces for scene in scenes))
+        start = vv.EnsembleScene._of(scenes[0], acting, **stacked)
     how = case.how | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
     return Case(start, tuple(t * time for t in case.t), how)
 

@@ -209,6 +209,8 @@ FAMILIES: list[tuple[int, tuple[str, ...]]] = [
     (3, ("QuadraticDrag",)),
     (3, ("QuadraticDrag", "LinearDrag")),
     (3, ("QuadraticDrag", "UniformField")),
+    (3, ("Harmonic", "UniformMagneticField")),
+    (3, ("Harmonic", "RotatingFrame", "LinearDrag")),
 ]
 
 

@@ -224,7 +224,7 @@ def test_what_has_no_meaning_is_refused() -> None:
         (scene, {"collisions": "stop", "restitution": 1.0}, "restitution: expected None"),
         (scene, {"restitution": 1.0}, "restitution: expected None"),
         (scene, {"collisions": "bonce"}, "did you mean 'bounce'"),
-        (scene, {"collisions": 1}, "collisions: expected a name"),
+        (scene, {"collisions": 1}, "collisions: expected one of merge, bounce, stop, got 1"),
         (overlap, {"collisions": "bounce"}, "bodies 0 and 1 overlap by 0.5 at the start"),
         (overlap, {"collisions": "stop"}, "bodies 0 and 1 overlap"),
         (vv.Scene(bodies, vv.QuadraticDrag([1.0, 2.0])), {"collisions": "merge"}, "QuadraticDrag"),

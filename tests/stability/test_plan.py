@@ -76,7 +76,7 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     assert not vv.Scene(pair, vv.Gravity(1.0, softening=0.1)).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.Gravity(1.0), vv.UniformField([0, 0, 1.0])).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
-    assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.UniformMagneticField([1.0, 0.0, 0.0])).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.QuadraticDrag(1.0), vv.UniformMagneticField([1.0, 0.0, 0.0])).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.Gravity(1.0)).plan(t=1.0).closed_form
 
 

@@ -37,8 +37,7 @@ pub(super) fn first_choice(
     let told = if formula {
         forces.iter().all(|force| !force.is_formula() || force.is_entire())
     } else {
-        matches!(forces, [force] if force.as_newtonian().is_some())
-            || (!forces.is_empty() && forces.iter().all(|force| force.is_linear()))
+        matches!(forces, [force] if force.as_newtonian().is_some()) || (!touching && turns_linearly(forces))
     };
     let serves = |method: &&'static Method| {
         told && active.len() <= RING_MAX
@@ -47,6 +46,15 @@ pub(super) fn first_choice(
             && check(method, forces, active, passive, groups).is_ok()
     };
     series.filter(serves).or_else(|| if formula { registry::method("dop853") } else { None })
+}
+
+/// Whether forces are linear in the place and the velocity of each body, and some of them turns it back. What only falls or
+/// slows down would be gone through in one step, in which events and contacts pass unseen.
+fn turns_linearly(forces: &[Arc<dyn ForceTerm>]) -> bool {
+    let back = |force: &Arc<dyn ForceTerm>| {
+        force.as_harmonic().is_some() || force.as_magnetic().is_some() || force.as_rotating().is_some()
+    };
+    forces.iter().all(|force| force.is_linear()) && forces.iter().any(back)
 }
 
 /// Refuses forces without series, and bodies that they do not serve.
