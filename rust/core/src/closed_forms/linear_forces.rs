@@ -5,7 +5,6 @@
 //! Source: V. I. Arnold, *Ordinary Differential Equations*, chapter 3.
 
 use super::{ClosedForm, ExactState, Member, Path, Paths};
-use crate::forces::ForceTerm;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::matrix_exponential::MatrixExponential;
 use crate::numerics::real::Real;
@@ -20,7 +19,7 @@ pub static FORM: ClosedForm = ClosedForm {
     applies: |member| {
         !member.forces.is_empty()
             && member.forces.iter().all(|force| force.is_linear())
-            && !falls_along_a_slant(member)
+            && !drifts_along_a_slant(member)
             && (0..member.mass.len()).all(|particle| in_range(member, particle))
     },
     motion: |member, ticker| {
@@ -41,14 +40,13 @@ const LARGEST: i32 = 300;
 /// An acceleration by the numbers of a state.
 type Rows = [[Scaled; NUMBERS]; 3];
 
-/// Whether something falls freely along an axis of rotation that is no axis of coordinates: places that grow as t² there go
-/// into all components, and rounding would take some digits from velocities after a million radians.
-fn falls_along_a_slant(member: &Member<'_>) -> bool {
+/// Whether a frame turns about an axis that is none of the coordinates', or beside a magnetic field: what drifts or falls along
+/// such an axis grows with t and t², goes into all components, and its rounding into velocities that do not grow.
+fn drifts_along_a_slant(member: &Member<'_>) -> bool {
     let slanted = |omega: [f64; 3]| omega.iter().filter(|&&part| part != 0.0).count() > 1;
-    let any = |of: fn(&dyn ForceTerm) -> bool| member.forces.iter().any(|&force| of(force));
-    member.forces.iter().any(|force| force.as_rotating().is_some_and(|(omega, _)| slanted(omega)))
-        && any(|force| force.as_uniform().is_some() || force.as_electric(0).is_some())
-        && !any(|force| force.as_harmonic().is_some() || force.as_linear_drag().is_some())
+    let any_magnetic = member.forces.iter().any(|force| force.as_magnetic().is_some());
+    let mut turning = member.forces.iter().filter_map(|force| force.as_rotating());
+    turning.any(|(omega, _)| any_magnetic || slanted(omega))
 }
 
 /// What each component of the acceleration of a particle is made of.
