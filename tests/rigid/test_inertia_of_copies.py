@@ -256,3 +256,21 @@ def test_a_warning_names_the_copy_by_its_place_among_all(copy: int) -> None:
     copies = vv.Scene(top, vv.UniformField((0.0, 0.0, -1.0))).ensemble(moments=kinds, angular_velocity=spins)
     with pytest.warns(vv.AccuracyWarning, match=f"in copy {copy}, the energy"):
         copies.run(20.0, method="rk4", dt=0.3)
+
+
+def test_copies_that_have_not_begun_are_where_the_scene_has_them() -> None:
+    """Their first row had orientations and spins of zero, and so energies of another scene."""
+
+    def stop(done: float, total: float) -> None:
+        raise KeyboardInterrupt
+
+    body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 0.7, 0.3], pivot=[0.0, 0.0, -1.0])
+    spins = np.random.default_rng(0).uniform(0.1, 1.0, (200, 1, 3))
+    copies = vv.Scene(body, WEIGHT).ensemble(angular_velocity=spins)
+    with pytest.raises(vv.Interrupted) as stopped:
+        copies.run(t=[0.0, 1.0, 1e6], progress=stop)
+    kept = stopped.value.trajectory
+    assert np.isnan(kept.position[:, 2]).all(axis=(1, 2)).any()
+    # What is recorded of a start is it, to the rounding of a turn of axes and back.
+    np.testing.assert_allclose(kept.angular_velocity[:, 0], spins, rtol=1e-14, atol=0.0)
+    np.testing.assert_array_equal(np.linalg.norm(kept.orientation[:, 0], axis=-1), 1.0)

@@ -80,6 +80,12 @@ impl Unit {
             let output = unsafe { writer.output(self.copy, time) };
             for &body in &self.bodies[self.recorded.clone()] {
                 output.write_rounded(body, positions[body], velocities[body]);
+                if let Some(bodies) = &scene.rigid
+                    && let Some(place) = body.checked_sub(scene.particles - bodies.count)
+                {
+                    let at = self.copy * bodies.count + place;
+                    output.write_turned(place, (bodies.orientation[at], bodies.angular_velocity[at]));
+                }
             }
         }
     }
