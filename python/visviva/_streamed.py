@@ -13,6 +13,7 @@ import numpy as np
 from visviva import _core
 from visviva._accuracy import warn_if_unresolved
 from visviva._arrays import whole_number
+from visviva._lost_spins import warn_of_lost_spins
 from visviva._parquet import GROUP_BYTES, groups, write
 from visviva._paths import path_text
 from visviva._progress import callback
@@ -85,6 +86,8 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
             where = f", which {path!r} holds" if done else ""
             raise Interrupted(f"interrupted after {done} of {len(copies)} copies{where}") from stopped
     warn_if_unresolved(worst, asked, ensemble=True)
+    if not copies.scene._turns_freely:
+        warn_of_lost_spins(asked, ensemble=True)
     return status
 
 

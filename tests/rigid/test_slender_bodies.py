@@ -1,5 +1,8 @@
 """Slender bodies, long arms, fast spins and pivots far away: what rounding leaves, and what is said of it."""
 
+import warnings
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -83,3 +86,20 @@ def test_sizes_out_of_range() -> None:
     assert made.plan(t=1.0).method != "taylor"
     with pytest.raises(vv.InvalidInput, match=r"expected sizes .* between 1e-40 and 1e40 for taylor, got 1e-90"):
         made.run(t=1.0, method="taylor")
+
+
+@pytest.mark.parametrize("streamed", [False, True])
+def test_the_worst_body_of_the_worst_copy_is_named(streamed: bool, tmp_path: Path) -> None:
+    """And of a loose tolerance nothing that it allows."""
+    pair = vv.RigidBodies(
+        [1.0, 1.0], [[1.0, 1.0, 1.0]] * 2, position=[[0, 0, 0], [5.0, 0, 0]], angular_velocity=[[0.1, 0.2, 0.0]] * 2
+    )
+    moments = np.ones((3, 2, 3))
+    moments[1, 1, 2], moments[2, 0, 2] = 1e-11, 1e-10
+    copies = vv.Scene(pair, vv.AppliedTorque([0.01, 0.0, 0.0], frame="body")).ensemble(moments=moments)
+    how = {"t": [0.0, 0.01], "method": "verner98"}
+    with pytest.warns(vv.AccuracyWarning, match="largest moment of rigid body 1 of copy 1 is 1e"):
+        copies.run_to_parquet(to=tmp_path / "runs.parquet", **how) if streamed else copies.run(**how)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        copies.run(**how, rtol=1e-3)
