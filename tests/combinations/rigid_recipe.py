@@ -183,7 +183,7 @@ def rigid_recipes(draw: st.DrawFn, forces: list[str]) -> RigidRecipe:
         drifting=draw(st.booleans()),
         offset=draw(_some((3, st.just(0)), (1, st.integers(1, 6)))),
         units=draw(_some((3, st.just((0, 0, 0))), (1, st.tuples(powers, powers, powers)))),
-        members=draw(_some((2, st.just(0)), (2, st.integers(1, 12)))),
+        members=draw(_some((4, st.just(0)), (4, st.integers(1, 12)), (1, st.integers(33, 40)))),
         own=tuple(draw(st.lists(st.sampled_from(OWN), unique=True, min_size=1))),
         steps=draw(st.integers(1, 24)),
         ragged=draw(st.booleans()),

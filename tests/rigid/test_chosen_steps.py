@@ -78,6 +78,17 @@ def test_a_copy_is_what_it_is_alone() -> None:
         assert np.array_equal(copies[i].run(t=1.0).orientation, together.orientation[i])
 
 
+def test_copies_of_many_paces_are_what_they_are_alone_however_many_there_are() -> None:
+    """Each halves steps of its own, from its own spin on; beyond 32 to a thread, two copies were in one lane."""
+    spins = np.random.default_rng(1).normal(size=(40, 1, 3)) * np.logspace(-2.0, 1.0, 40)[:, None, None]
+    copies = vv.Scene(vv.RigidBody(1.0, [1.0, 1.0, 2.0]), vv.AppliedTorque([0.0, 0.0, 0.5])).ensemble(
+        angular_velocity=spins
+    )
+    runs = [copies.run(t=20.0, threads=threads).orientation for threads in (1, 2, 3)]
+    alone = np.array([copies[copy].run(t=20.0).orientation for copy in range(40)])
+    assert [np.array_equal(run, alone) for run in runs] == [True] * 3
+
+
 def test_one_that_cannot_be_followed_does_not_end_well() -> None:
     """A spin that no step of the run resolves; the copy beside it is as alone."""
     body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], position=[1.0, 0.0, 0.0])

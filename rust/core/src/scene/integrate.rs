@@ -111,8 +111,7 @@ impl Job<'_> {
         let count = |together: usize| runs.iter().map(|run| run.len().div_ceil(together) as u64).sum::<u64>();
         match self.plan.dt {
             Some(dt) => {
-                count(self.plan.layout.in_lockstep())
-                    * ((span / dt.abs()) as u64).saturating_sub(self.plan.from)
+                count(self.plan.in_lockstep()) * ((span / dt.abs()) as u64).saturating_sub(self.plan.from)
             }
             None => count(1) * adaptive::PROGRESS_PER_UNIT,
         }
@@ -174,7 +173,7 @@ fn alike<'u>(job: &Job<'_>, units: &'u mut [Unit]) -> Vec<&'u [Unit]> {
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
     // Full states, once there is more than one for every thread.
     let per_chunk =
-        if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.layout.in_lockstep()) } else { per_chunk };
+        if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.in_lockstep()) } else { per_chunk };
     units.chunk_by(|a, b| a.make_up == b.make_up).flat_map(|run| run.chunks(per_chunk)).collect()
 }
 

@@ -31,7 +31,7 @@ pub(super) fn run(
 ) -> Result<Vec<Report>> {
     let mut reports = Vec::with_capacity(units.len());
     let mut room = None;
-    for group in units.chunks(job.plan.layout.in_lockstep()) {
+    for group in units.chunks(job.plan.in_lockstep()) {
         // Nothing is prepared for what stops before it begins: of millions of units it takes seconds.
         if ticker.tick().is_err() && job.begins_plainly() {
             reports.extend(group.iter().map(|unit| job.not_begun(unit)));

@@ -27,6 +27,11 @@ impl Plan {
         if unit.follows { Layout::Batched } else { self.layout }
     }
 
+    /// Units that one state holds at a fixed step. Where each lane halves steps of its own, a lane is one unit's alone.
+    pub fn in_lockstep(&self) -> usize {
+        if self.tolerance.is_some() { self.layout.units() } else { self.layout.in_lockstep() }
+    }
+
     /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
     /// massive ones are integrated again.
     pub fn pieces(&self, massless: usize, threads: usize) -> usize {
