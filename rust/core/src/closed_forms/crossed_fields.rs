@@ -21,7 +21,7 @@ pub static FORM: ClosedForm = ClosedForm {
         member.forces.iter().all(|force| force.as_magnetic().is_some() || is_uniform(*force))
             && member.forces.iter().any(|force| force.as_magnetic().is_some())
     },
-    motion: |member, ticker| {
+    motion: |member, _, ticker| {
         Paths::motion(member, ticker, |i| Ok(Helix::new(member, i, Vector::new(uniform_part(member, i)))))
     },
 };

@@ -16,7 +16,7 @@ pub static FORM: ClosedForm = ClosedForm {
         let has_digits = |k: f64| k == 0.0 || member.mass.iter().all(|mass| (k / mass).is_normal());
         matches!(&member.forces[..], [force] if force.as_inverse_distance_center().is_some_and(|(k, _)| has_digits(k)))
     },
-    motion: |member, ticker| {
+    motion: |member, _, ticker| {
         let center = member.forces.iter().find_map(|force| force.as_inverse_distance_center());
         let Some((k, center)) = center else {
             return Err(Error::Internal("a center that is none".to_owned()));

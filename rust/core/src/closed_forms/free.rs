@@ -8,7 +8,7 @@ pub static FORM: ClosedForm = ClosedForm {
     name: "straight lines",
     reason: "no force acts",
     applies: |member| member.forces.is_empty(),
-    motion: |member, ticker| {
+    motion: |member, _, ticker| {
         let line = |i: usize| Ok(Parabola::line(member.position[i], member.velocity[i]));
         Paths::motion(member, ticker, line)
     },

@@ -20,7 +20,7 @@ pub static FORM: ClosedForm = ClosedForm {
         member.forces.iter().all(|force| force.as_linear_drag().is_some() || is_uniform(*force))
             && member.forces.iter().any(|force| force.as_linear_drag().is_some())
     },
-    motion: |member, _| Ok(Box::new(Drag::new(member))),
+    motion: |member, _, _| Ok(Box::new(Drag::new(member))),
 };
 
 struct Drag {
@@ -57,6 +57,19 @@ impl Drag {
 impl Motion for Drag {
     fn states(
         &self,
+        elapsed: &[DoubleDouble],
+        states: &mut Vec<ExactState>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        states.clear();
+        elapsed.iter().try_for_each(|&elapsed| self.add_states(elapsed, states, ticker))
+    }
+}
+
+impl Drag {
+    /// Adds the states at a time.
+    fn add_states(
+        &self,
         elapsed: DoubleDouble,
         states: &mut Vec<ExactState>,
         ticker: &mut Ticker<'_>,
@@ -67,7 +80,6 @@ impl Motion for Drag {
         // |u| ≤ 1
         let slow = u.to_f64().abs() <= 1.0;
         let (way, fall) = (t.by(first), t.by(t).by(second));
-        states.clear();
         for ((position, velocity), [g, terminal]) in
             self.position.iter().zip(&self.velocity).zip(&self.fields)
         {

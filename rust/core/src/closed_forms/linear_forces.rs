@@ -1,12 +1,14 @@
 //! Any mixture of forces that are linear in the place and the velocity of each particle, but for a constant: harmonic ones,
 //! uniform, electric and magnetic fields, linear drag, rotating frames.
 //!
-//! The one idea: the place, the velocity and a 1 after them are a vector y with y′ = M y, which [`MatrixExponential`] moves.
+//! The one idea: the place, the velocity and a 1 after them are a vector y with y′ = M y, which a [`Propagator`] moves: one of
+//! all particles and copies with the same rates.
 //! Source: V. I. Arnold, *Ordinary Differential Equations*, chapter 3.
 
 use super::{ClosedForm, ExactState, Member, Path, Paths};
+use crate::forces::linear::{LinearAcceleration, NUMBERS};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::matrix_exponential::MatrixExponential;
+use crate::numerics::matrix_exponential::propagator::Propagator;
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use core::cell::RefCell;
@@ -18,27 +20,18 @@ pub static FORM: ClosedForm = ClosedForm {
     reason: "all forces are linear in the place and the velocity of each body, but for a constant",
     applies: |member| {
         !member.forces.is_empty()
-            && member.forces.iter().all(|force| force.is_linear())
+            && member.forces.iter().all(|force| force.as_linear().is_some())
             && !drifts_along_a_slant(member)
             && (0..member.mass.len()).all(|particle| in_range(member, particle))
     },
-    motion: |member, ticker| {
-        let mut last = None;
-        Paths::motion(member, ticker, |particle| {
-            let flow = Flow::new(member, particle, last.as_ref());
-            last = Some(Rc::clone(&flow.flows));
-            Ok(flow)
-        })
+    motion: |member, shared, ticker| {
+        let flows: Rc<Flows> = shared.of_form();
+        Paths::motion(member, ticker, |particle| Ok(Flow::new(member, particle, &flows)))
     },
 };
 
-/// The place, the velocity, and a 1.
-const NUMBERS: usize = 7;
 /// The largest exponent of a rate, or of a number of a state: units of numbers and of time are made of them.
 const LARGEST: i32 = 300;
-
-/// An acceleration by the numbers of a state.
-type Rows = [[Scaled; NUMBERS]; 3];
 
 /// Whether a frame turns about an axis that is none of the coordinates', or beside a magnetic field: what drifts or falls along
 /// such an axis grows with t and t², goes into all components, and its rounding into velocities that do not grow.
@@ -49,60 +42,13 @@ fn drifts_along_a_slant(member: &Member<'_>) -> bool {
     turning.any(|(omega, _)| any_magnetic || slanted(omega))
 }
 
-/// What each component of the acceleration of a particle is made of.
-fn acceleration(member: &Member<'_>, particle: usize) -> Rows {
-    let mut rows = [[Scaled::ZERO; NUMBERS]; 3];
-    let mass = Scaled::from(member.mass[particle]);
-    let mut add = |row: usize, column: usize, value: Scaled| {
-        rows[row][column] = rows[row][column].plus(value);
-    };
-    for force in &member.forces {
-        if let Some(g) = force.as_uniform() {
-            (0..3).for_each(|c| add(c, 6, Scaled::from(g[c])));
-        }
-        // A body without mass may be there, if it has no charge.
-        if let Some((field, charge)) = force.as_electric(particle).filter(|&(_, charge)| charge != 0.0) {
-            (0..3).for_each(|c| add(c, 6, Scaled::from(charge).times(field[c]).over(mass)));
-        }
-        if let Some((k, center)) = force.as_harmonic().filter(|&(k, _)| k != 0.0) {
-            let rate = Scaled::from(-k).over(mass);
-            for c in 0..3 {
-                add(c, c, rate);
-                add(c, 6, rate.times(-center[c]));
-            }
-        }
-        if let Some(tau) = force.as_linear_drag() {
-            (0..3).for_each(|c| add(c, 3 + c, Scaled::from(-1.0).over(Scaled::from(tau))));
-        }
-        if let Some(magnetic) = force.as_magnetic() {
-            let charge = magnetic.charge_of(particle);
-            if charge != 0.0 {
-                let field = magnetic.field.map(|b| Scaled::from(charge).times(b).over(mass));
-                for c in 0..3 {
-                    let (next, last) = ((c + 1) % 3, (c + 2) % 3);
-                    add(c, 3 + next, field[last]);
-                    add(c, 3 + last, field[next].negative());
-                }
-            }
-        }
-        if let Some((omega, center)) = force.as_rotating() {
-            let omega = omega.map(Scaled::from);
-            let square = omega.iter().fold(Scaled::ZERO, |sum, part| sum.plus(part.by(*part)));
-            for c in 0..3 {
-                let (next, last) = ((c + 1) % 3, (c + 2) % 3);
-                // −2 ω × v and ω² d − (ω·d) ω, with d from the axis.
-                add(c, 3 + next, omega[last].times(2.0));
-                add(c, 3 + last, omega[next].times(-2.0));
-                for column in 0..3 {
-                    let outward = if column == c { square } else { Scaled::ZERO };
-                    let entry = outward.minus(omega[c].by(omega[column]));
-                    add(c, column, entry);
-                    add(c, 6, entry.times(-center[column]));
-                }
-            }
-        }
+/// The acceleration of a particle.
+fn acceleration(member: &Member<'_>, particle: usize) -> LinearAcceleration {
+    let mut sum = LinearAcceleration::default();
+    for force in member.forces.iter().filter_map(|force| force.as_linear()) {
+        force.add_to(&mut sum, particle, Scaled::from(member.mass[particle]));
     }
-    rows
+    sum
 }
 
 /// Whether all numbers are such that none made of them leaves the range.
@@ -112,7 +58,7 @@ fn in_range(member: &Member<'_>, particle: usize) -> bool {
         of.is_zero() || (number.is_finite() && exponent_of(number).abs() <= LARGEST)
     };
     let numbers = member.position[particle].into_iter().chain(member.velocity[particle]);
-    acceleration(member, particle).as_flattened().iter().all(|&entry| sound(entry))
+    acceleration(member, particle).rows().as_flattened().iter().all(|&entry| sound(entry))
         && numbers.map(Scaled::from).all(sound)
 }
 
@@ -121,73 +67,107 @@ fn exponent_of(number: f64) -> i32 {
     if number.is_normal() { crate::numerics::power_of_two::exponent(number) } else { i32::MAX }
 }
 
-/// Rates, and what they make of states.
-struct Flows {
-    rates: Vec<DoubleDouble>,
-    /// About the shortest of periods and decays.
-    time: f64,
-    /// Forwards and backwards in time, once somebody has asked for such a time.
-    of: [RefCell<Option<MatrixExponential>>; 2],
+/// How many flows are kept ready: so many kinds of particles may be in a scene whose copies share them.
+const READY: usize = 8;
+
+/// A matrix by rows, of which the last is nothing: y′ of y.
+type Rates = [DoubleDouble; NUMBERS * NUMBERS];
+
+/// Those in use of late, the last one first.
+#[derive(Default)]
+struct Flows(RefCell<Vec<Ready>>);
+
+/// The flow of some rates, forwards or backwards in time.
+struct Ready {
+    rates: Rc<Rates>,
+    backwards: bool,
+    propagator: Propagator,
 }
 
-impl Flows {
-    fn new(rates: Vec<DoubleDouble>) -> Self {
+impl Ready {
+    fn new(rates: &Rc<Rates>, backwards: bool) -> Self {
         let mut fastest = 0.0_f64;
         for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
             let size =
                 |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
             fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
         }
-        let time = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
-        Self { rates, time, of: Default::default() }
-    }
-
-    fn moved(&self, start: &[f64; NUMBERS], elapsed: DoubleDouble) -> Vec<DoubleDouble> {
-        let backwards = elapsed.to_f64() < 0.0;
-        let elapsed = if backwards { -elapsed } else { elapsed };
-        let mut flow = self.of[usize::from(backwards)].borrow_mut();
-        let flow = flow.get_or_insert_with(|| {
-            let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
-            MatrixExponential::new(self.rates.iter().map(signed).collect(), NUMBERS, self.time)
-        });
-        flow.unrounded((elapsed.high(), elapsed.low()), start)
+        let shortest = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
+        let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
+        let propagator = Propagator::new(rates.iter().map(signed).collect(), NUMBERS, shortest);
+        Self { rates: Rc::clone(rates), backwards, propagator }
     }
 }
 
-/// A particle in a flow, which it shares with those before it that have the same rates.
+impl Flows {
+    /// These rates, as those of one that is ready if there is one.
+    fn known(&self, rates: Rates) -> Rc<Rates> {
+        let ready = self.0.borrow();
+        let same = ready.iter().find(|ready| *ready.rates == rates);
+        same.map_or_else(|| Rc::new(rates), |ready| Rc::clone(&ready.rates))
+    }
+
+    /// Does something with the flow of these rates.
+    fn with<T>(&self, rates: &Rc<Rates>, backwards: bool, act: impl FnOnce(&mut Propagator) -> T) -> T {
+        let mut ready = self.0.borrow_mut();
+        let is_it = |one: &Ready| {
+            one.backwards == backwards && (Rc::ptr_eq(&one.rates, rates) || one.rates == *rates)
+        };
+        match ready.iter().position(is_it) {
+            Some(at) => ready[..=at].rotate_right(1),
+            None => {
+                ready.truncate(READY - 1);
+                ready.insert(0, Ready::new(rates, backwards));
+            }
+        }
+        act(&mut ready[0].propagator)
+    }
+}
+
+/// A particle in a flow.
 struct Flow {
+    rates: Rc<Rates>,
     flows: Rc<Flows>,
     start: [f64; NUMBERS],
 }
 
 impl Flow {
-    fn new(member: &Member<'_>, particle: usize, last: Option<&Rc<Flows>>) -> Self {
-        let mut rates = vec![DoubleDouble::zero(); NUMBERS * NUMBERS];
+    fn new(member: &Member<'_>, particle: usize, flows: &Rc<Flows>) -> Self {
+        let mut rates = [DoubleDouble::zero(); NUMBERS * NUMBERS];
         for c in 0..3 {
             rates[c * NUMBERS + 3 + c] = DoubleDouble::one();
         }
-        for (c, row) in acceleration(member, particle).iter().enumerate() {
+        for (c, row) in acceleration(member, particle).rows().iter().enumerate() {
             for (column, entry) in row.iter().enumerate() {
                 rates[(3 + c) * NUMBERS + column] = entry.to_double_double();
             }
         }
-        let flows = match last {
-            Some(last) if last.rates == rates => Rc::clone(last),
-            _ => Rc::new(Flows::new(rates)),
-        };
         let ([x, y, z], [u, v, w]) = (member.position[particle], member.velocity[particle]);
-        Self { flows, start: [x, y, z, u, v, w, 1.0] }
+        Self { rates: flows.known(rates), flows: Rc::clone(flows), start: [x, y, z, u, v, w, 1.0] }
     }
 }
 
 impl Path for Flow {
+    fn states(&self, elapsed: &[DoubleDouble], mut put: impl FnMut(usize, ExactState)) {
+        let backwards = elapsed.iter().any(|elapsed| elapsed.to_f64() < 0.0);
+        let after: Vec<_> = elapsed.iter().map(|&t| if backwards { -t } else { t }).collect();
+        self.flows.with(&self.rates, backwards, |flow| {
+            flow.set_times(&after);
+            for time in 0..after.len() {
+                let state = flow.moved(time, &self.start);
+                // Beyond the range of numbers there is no sign.
+                let number = |number: DoubleDouble| {
+                    if number.is_finite() { number } else { DoubleDouble::from(f64::INFINITY) }
+                };
+                let part = |from: usize| core::array::from_fn(|c| number(state[from + c]));
+                put(time, (part(0), part(3)));
+            }
+        });
+    }
+
     fn state(&self, elapsed: DoubleDouble) -> ExactState {
-        let state = self.flows.moved(&self.start, elapsed);
-        // Beyond the range of numbers there is no sign.
-        let number = |number: DoubleDouble| {
-            if number.is_finite() { number } else { DoubleDouble::from(f64::INFINITY) }
-        };
-        let part = |from: usize| core::array::from_fn(|c| number(state[from + c]));
-        (part(0), part(3))
+        let mut found = ExactState::default();
+        self.states(&[elapsed], |_, state| found = state);
+        found
     }
 }

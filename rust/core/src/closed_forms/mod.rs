@@ -31,6 +31,8 @@ pub use crate::nbody::two_body::ExactState;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
+use core::any::Any;
+use std::rc::Rc;
 
 /// An ensemble member at its start, and what acts on it.
 #[derive(Debug)]
@@ -57,7 +59,7 @@ pub struct ClosedForm {
     /// Whether it is that of a member.
     pub applies: fn(&Member<'_>) -> bool,
     /// The motion of a member to which it applies; errors are refusals by name, or that the caller asked to stop.
-    pub motion: fn(&Member<'_>, &mut Ticker<'_>) -> Result<Box<dyn Motion>>,
+    pub motion: fn(&Member<'_>, &mut Shared, &mut Ticker<'_>) -> Result<Box<dyn Motion>>,
 }
 
 impl PartialEq for ClosedForm {
@@ -66,15 +68,32 @@ impl PartialEq for ClosedForm {
     }
 }
 
+/// What the motions that a thread makes one after another have in common; only their form knows what it is.
+#[derive(Debug, Default)]
+pub struct Shared(Option<Rc<dyn Any>>);
+
+impl Shared {
+    /// That of a form, or a new one.
+    fn of_form<T: Default + 'static>(&mut self) -> Rc<T> {
+        let known = self.0.clone().and_then(|shared| shared.downcast().ok());
+        known.unwrap_or_else(|| {
+            let new = Rc::new(T::default());
+            self.0 = Some(new.clone());
+            new
+        })
+    }
+}
+
 /// A motion, ready to be asked.
 pub trait Motion {
-    /// The states of all particles, in order and unrounded, so long after the start (before it, if negative).
+    /// The states of all particles, in order and unrounded, so long after the start, for one time after another; all of them
+    /// after it, or (if negative) before it.
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted), and then some are missing.
     fn states(
         &self,
-        elapsed: DoubleDouble,
+        elapsed: &[DoubleDouble],
         states: &mut Vec<ExactState>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
@@ -84,6 +103,11 @@ pub trait Motion {
 trait Path {
     /// Its state.
     fn state(&self, elapsed: DoubleDouble) -> ExactState;
+
+    /// Its states at some times, each put to where it belongs.
+    fn states(&self, elapsed: &[DoubleDouble], mut put: impl FnMut(usize, ExactState)) {
+        elapsed.iter().enumerate().for_each(|(time, &elapsed)| put(time, self.state(elapsed)));
+    }
 }
 
 /// Particles that move each by itself.
@@ -105,14 +129,15 @@ impl<P: Path + 'static> Paths<P> {
 impl<P: Path> Motion for Paths<P> {
     fn states(
         &self,
-        elapsed: DoubleDouble,
+        elapsed: &[DoubleDouble],
         states: &mut Vec<ExactState>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         states.clear();
-        for path in &self.0 {
+        states.resize(self.0.len() * elapsed.len(), ExactState::default());
+        for (particle, path) in self.0.iter().enumerate() {
             ticker.tick()?;
-            states.push(path.state(elapsed));
+            path.states(elapsed, |time, state| states[time * self.0.len() + particle] = state);
         }
         Ok(())
     }

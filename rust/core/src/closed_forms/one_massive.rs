@@ -15,7 +15,7 @@ pub static FORM: ClosedForm = ClosedForm {
         matches!(&member.forces[..], [force] if matches!(force.as_newtonian(), Some((_, 0.0))))
             && member.mass.iter().filter(|&&mass| mass > 0.0).count() == 1
     },
-    motion: |member, ticker| {
+    motion: |member, _, ticker| {
         let constant = member.forces.iter().find_map(|force| force.as_newtonian());
         let center = member.mass.iter().position(|&mass| mass > 0.0);
         let (Some((constant, _)), Some(center)) = (constant, center) else {

@@ -27,7 +27,7 @@ pub static FORM: ClosedForm = ClosedForm {
                 .iter()
                 .all(|force| oscillates(*force) || force.as_linear_drag().is_some() || is_uniform(*force))
     },
-    motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Oscillator::new(member, i))),
+    motion: |member, _, ticker| Paths::motion(member, ticker, |i| Ok(Oscillator::new(member, i))),
 };
 
 /// Whether a force is what other linear forms do not have.

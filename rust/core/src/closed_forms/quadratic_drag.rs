@@ -26,7 +26,7 @@ pub static FORM: ClosedForm = ClosedForm {
             })
             && (0..member.mass.len()).all(|particle| is_along(member, particle))
     },
-    motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Line::new(member, i))),
+    motion: |member, _, ticker| Paths::motion(member, ticker, |i| Ok(Line::new(member, i))),
 };
 
 fn less(a: Scaled, b: Scaled) -> bool {

@@ -16,7 +16,7 @@ pub static FORM: ClosedForm = ClosedForm {
     name: "straight lines seen from a rotating frame",
     reason: "no force acts but those of the frame",
     applies: |member| matches!(&member.forces[..], [force] if force.as_rotating().is_some()),
-    motion: |member, ticker| Paths::motion(member, ticker, |i| Ok(Turning::new(member, i))),
+    motion: |member, _, ticker| Paths::motion(member, ticker, |i| Ok(Turning::new(member, i))),
 };
 
 struct Turning {

@@ -14,7 +14,7 @@ pub static FORM: ClosedForm = ClosedForm {
     name: "Kepler's two-body problem",
     reason: "two bodies and unsoftened inverse-square forces between them",
     applies: |member| member.mass.len() == 2 && constant(member).is_some(),
-    motion: |member, _| {
+    motion: |member, _, _| {
         let (Some(constant), &[one, other]) = (constant(member), member.mass) else {
             return Err(Error::Internal("two bodies that are not".to_owned()));
         };
@@ -55,12 +55,15 @@ fn constant(member: &Member<'_>) -> Option<f64> {
 impl Motion for TwoBody {
     fn states(
         &self,
-        elapsed: DoubleDouble,
+        elapsed: &[DoubleDouble],
         states: &mut Vec<ExactState>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         states.clear();
-        states.extend(self.unrounded(elapsed));
-        ticker.tick()
+        for &elapsed in elapsed {
+            ticker.tick()?;
+            states.extend(self.unrounded(elapsed));
+        }
+        Ok(())
     }
 }

@@ -4,6 +4,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -85,8 +86,8 @@ impl ForceTerm for Harmonic {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -145,6 +146,15 @@ impl ForceTerm for Harmonic {
     }
     fn as_harmonic(&self) -> Option<(f64, [f64; 3])> {
         Some((self.k, self.center))
+    }
+}
+
+impl Linear for Harmonic {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, _: usize, mass: Scaled) {
+        let rate = Scaled::from(-self.k).over(mass);
+        if self.k != 0.0 {
+            (0..3).for_each(|c| acceleration.add_by_distance(c, (c, self.center[c]), rate));
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::bodies::PreciseBodies;
 use super::context::{Context, System};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
 use super::term::{ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -66,8 +67,8 @@ impl ForceTerm for LinearDrag {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -97,6 +98,13 @@ impl ForceTerm for LinearDrag {
     }
     fn as_linear_drag(&self) -> Option<f64> {
         Some(self.tau)
+    }
+}
+
+impl Linear for LinearDrag {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, _: usize, _: Scaled) {
+        let rate = Scaled::from(-1.0).over(Scaled::from(self.tau));
+        (0..3).for_each(|c| acceleration.add_by_velocity(c, c, rate));
     }
 }
 

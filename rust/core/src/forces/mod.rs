@@ -20,6 +20,7 @@ pub mod following;
 pub mod gravity;
 pub mod harmonic;
 mod limits;
+pub mod linear;
 pub mod linear_drag;
 pub mod links;
 pub mod monitor;

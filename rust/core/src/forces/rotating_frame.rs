@@ -4,6 +4,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -94,8 +95,8 @@ impl ForceTerm for RotatingFrame {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -156,6 +157,24 @@ impl ForceTerm for RotatingFrame {
     }
     fn as_rotating(&self) -> Option<([f64; 3], [f64; 3])> {
         Some((self.omega, self.center))
+    }
+}
+
+impl Linear for RotatingFrame {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, _: usize, _: Scaled) {
+        let omega = self.omega.map(Scaled::from);
+        let square = omega.iter().fold(Scaled::ZERO, |sum, part| sum.plus(part.by(*part)));
+        for c in 0..3 {
+            let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+            // −2 ω × v and ω² d − (ω·d) ω, with d from the axis.
+            acceleration.add_by_velocity(c, next, omega[last].times(2.0));
+            acceleration.add_by_velocity(c, last, omega[next].times(-2.0));
+            for of in 0..3 {
+                let outward = if of == c { square } else { Scaled::ZERO };
+                let rate = outward.minus(omega[c].by(omega[of]));
+                acceleration.add_by_distance(c, (of, self.center[of]), rate);
+            }
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::driven_force::Drive;
 use super::following::{Following, Leaders};
+use super::linear::Linear;
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::uniform_magnetic_field::MagneticField;
@@ -305,9 +306,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn is_formula(&self) -> bool {
         false
     }
-    /// Whether its acceleration of a body is linear in the place and the velocity of that body alone, but for a constant.
-    fn is_linear(&self) -> bool {
-        false
+    /// What it makes, if its acceleration of a body is linear in the place and the velocity of that body alone, but for a
+    /// constant.
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        None
     }
     /// Whether a Taylor series tells all of such a formula, wherever it is made.
     fn is_entire(&self) -> bool {

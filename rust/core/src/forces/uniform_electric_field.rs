@@ -4,6 +4,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
 use super::gravity::beside::{Beside, beside};
 use super::gravity::ring::Turns;
+use super::linear::{Linear, LinearAcceleration};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
@@ -93,8 +94,8 @@ impl ForceTerm for UniformElectricField {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -158,6 +159,16 @@ impl ForceTerm for UniformElectricField {
     }
     fn as_electric(&self, particle: usize) -> Option<([f64; 3], f64)> {
         Some((self.field, of_body(&self.charge, particle)))
+    }
+}
+
+impl Linear for UniformElectricField {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, particle: usize, mass: Scaled) {
+        let charge = of_body(&self.charge, particle);
+        if charge != 0.0 {
+            let of = |c: usize| Scaled::from(charge).times(self.field[c]).over(mass);
+            (0..3).for_each(|c| acceleration.add_constant(c, of(c)));
+        }
     }
 }
 

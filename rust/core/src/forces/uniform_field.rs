@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, joined, vector_sum};
 use super::context::{Context, System};
+use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -58,8 +59,8 @@ impl ForceTerm for Uniform {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -99,6 +100,12 @@ impl ForceTerm for Uniform {
     }
     fn as_uniform(&self) -> Option<[f64; 3]> {
         Some(self.g)
+    }
+}
+
+impl Linear for Uniform {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, _: usize, _: Scaled) {
+        (0..3).for_each(|c| acceleration.add_constant(c, Scaled::from(self.g[c])));
     }
 }
 

@@ -1,7 +1,8 @@
 //! A uniform magnetic field: the Lorentz force on charges.
 
 use super::bodies::PreciseBodies;
-use super::context::{Context, System};
+use super::context::{Context, System, of_body};
+use super::linear::{Linear, LinearAcceleration};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
@@ -107,8 +108,8 @@ impl ForceTerm for UniformMagneticField {
     fn has_series(&self) -> bool {
         true
     }
-    fn is_linear(&self) -> bool {
-        true
+    fn as_linear(&self) -> Option<&dyn Linear> {
+        Some(self)
     }
     fn potential_and_virial(
         &self,
@@ -157,6 +158,20 @@ impl ForceTerm for UniformMagneticField {
     }
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         Some(MagneticField { field: self.field, charge: &self.charge })
+    }
+}
+
+impl Linear for UniformMagneticField {
+    fn add_to(&self, acceleration: &mut LinearAcceleration, particle: usize, mass: Scaled) {
+        let charge = of_body(&self.charge, particle);
+        if charge != 0.0 {
+            let field = self.field.map(|b| Scaled::from(charge).times(b).over(mass));
+            for c in 0..3 {
+                let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+                acceleration.add_by_velocity(c, next, field[last]);
+                acceleration.add_by_velocity(c, last, field[next].negative());
+            }
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! Numerische Mathematik 13 (1969) 293.
 
 mod columns;
+pub mod propagator;
 
 use super::double_double::{DoubleDouble, two_sum};
 use super::power_of_two::exponent;
@@ -70,10 +71,24 @@ impl MatrixExponential {
 
     /// The same in double-double.
     pub fn unrounded(&mut self, t: (f64, f64), y: &[f64]) -> Vec<DoubleDouble> {
-        let unit = PART * self.unit_of_time;
-        let units = DoubleDouble::new(t.0 / unit, t.1 / unit);
-        if units.to_f64() > MOST_UNITS || units.to_f64().is_nan() {
+        let Some((whole, rest)) = self.counted(t) else {
             return vec![DoubleDouble::from(f64::NAN); self.n];
+        };
+        let scaled: Vec<_> =
+            y.iter().zip(&self.units).map(|(&y, unit)| DoubleDouble::from(y / unit)).collect();
+        let mut value = self.step.series(rest, &Columns::of(&scaled, self.n), &self.inverses);
+        for digit in (0..u64::BITS).filter(|digit| whole >> digit & 1 == 1) {
+            value = self.power(digit).times(&value);
+        }
+        self.units.iter().enumerate().map(|(row, &unit)| value.get(row, 0).scale(unit)).collect()
+    }
+
+    /// Whole units of time and a rest; none if the time is so long that no digit would be left.
+    fn counted(&self, (high, low): (f64, f64)) -> Option<(u64, DoubleDouble)> {
+        let unit = PART * self.unit_of_time;
+        let units = DoubleDouble::new(high / unit, low / unit);
+        if units.to_f64() > MOST_UNITS || units.to_f64().is_nan() {
+            return None;
         }
         let mut whole = units.high().floor();
         let mut rest = units - DoubleDouble::from(whole);
@@ -81,34 +96,20 @@ impl MatrixExponential {
             whole -= 1.0;
             rest += DoubleDouble::from(1.0);
         }
-        let scaled: Vec<_> =
-            y.iter().zip(&self.units).map(|(&y, unit)| DoubleDouble::from(y / unit)).collect();
-        let mut value = self.step.series(rest, &Columns::of(&scaled, self.n), &self.inverses);
-        let mut left = whole as u64;
-        let mut power = 0;
-        while left > 0 {
-            if power == self.powers.len() {
-                self.square();
-            }
-            if left & 1 == 1 {
-                value = self.powers[power].times(&value);
-            }
-            (left, power) = (left >> 1, power + 1);
-        }
-        self.units.iter().enumerate().map(|(row, &unit)| value.get(row, 0).scale(unit)).collect()
+        Some((whole as u64, rest))
     }
 
-    /// The next power.
-    fn square(&mut self) {
-        let next = match self.powers.last() {
-            Some(last) => last.times(last),
-            None => {
-                let mut one = Columns::new(self.n, self.n);
-                (0..self.n).for_each(|row| one.set(row, row, DoubleDouble::one()));
-                self.step.series(DoubleDouble::one(), &one, &self.inverses)
-            }
-        };
-        self.powers.push(next);
+    /// exp(A u 2ᵏ).
+    fn power(&mut self, k: u32) -> &Columns {
+        let Self { n, step, powers, inverses, .. } = self;
+        while powers.len() <= k as usize {
+            let next = match powers.last() {
+                Some(last) => last.times(last),
+                None => step.series(DoubleDouble::one(), &Columns::one(*n), inverses),
+            };
+            powers.push(next);
+        }
+        &powers[k as usize]
     }
 }
 

@@ -47,12 +47,53 @@ impl Columns {
         DoubleDouble::new(high.0[row % WIDTH], low.0[row % WIDTH])
     }
 
+    /// The unit matrix.
+    pub(super) fn one(rows: usize) -> Self {
+        let mut one = Self::new(rows, rows);
+        (0..rows).for_each(|row| one.set(row, row, DoubleDouble::one()));
+        one
+    }
+
+    /// Matrices as the columns of one, each with its own columns one below the other.
+    pub(super) fn of_matrices(matrices: &[Self]) -> Self {
+        let numbers: Vec<Eight> = matrices.iter().flat_map(|matrix| &matrix.numbers).copied().collect();
+        let each = numbers.len() / matrices.len();
+        Self { rows: each * WIDTH, each, numbers }
+    }
+
     /// The product with another.
     pub(super) fn times(&self, other: &Self) -> Self {
         let columns = other.numbers.len() / other.each;
         let mut product = Self::new(self.rows, columns);
         multiply(self, other, &mut product);
         product
+    }
+
+    /// The same into one that is there. What comes of a column of matrices ([`of_matrices`](Self::of_matrices)) is a matrix.
+    pub(super) fn times_into(&self, other: &Self, product: &mut Self) {
+        multiply(self, other, product);
+    }
+
+    /// Takes the numbers of another of the same size.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.numbers.copy_from_slice(&other.numbers);
+    }
+
+    /// The size of the largest number; infinite if there are none.
+    pub(super) fn largest(&self) -> f64 {
+        let size = |largest: f64, number: f64| if number.abs() <= largest { largest } else { number.abs() };
+        let largest = self.numbers.iter().flat_map(|[high, _]| high.0).fold(0.0, size);
+        if largest.is_nan() { f64::INFINITY } else { largest }
+    }
+
+    /// Takes each number times a factor.
+    pub(super) fn scale(&mut self, factor: DoubleDouble) {
+        scale(factor, &mut self.numbers);
+    }
+
+    /// Takes the powers of a number, from the zeroth on, for the first column.
+    pub(super) fn set_powers(&mut self, x: DoubleDouble) {
+        set_powers(x, &mut self.numbers[..self.each]);
     }
 
     /// Σ (A x)ᵏ y/k! of so many k, this being A; `inverses` are 1/k.
@@ -77,8 +118,12 @@ fn product<V: Real>(a: [V; 2], b: [V; 2]) -> [V; 2] {
 fn column<V: Vector8>(a: &Columns, b: &[Eight], into: &mut [Eight]) {
     for (block, into) in into.iter_mut().enumerate() {
         let (mut sum, mut low) = (V::zero(), V::zero());
-        for j in 0..a.rows {
+        for j in 0..a.numbers.len() / a.each {
             let [high, rest] = &b[j / WIDTH];
+            // Of what moves by itself most are nothing.
+            if high.0[j % WIDTH] == 0.0 {
+                continue;
+            }
             let factor = [V::splat(high.0[j % WIDTH]), V::splat(rest.0[j % WIDTH])];
             let [of_high, of_low] = a.numbers[j * a.each + block];
             let [term, left] = product([V::load(of_high), V::load(of_low)], factor);
@@ -93,8 +138,44 @@ fn column<V: Vector8>(a: &Columns, b: &[Eight], into: &mut [Eight]) {
 
 #[inline(always)]
 fn multiply_body<V: Vector8>(a: &Columns, b: &Columns, into: &mut Columns) {
-    for (b, into) in b.numbers.chunks_exact(b.each).zip(into.numbers.chunks_exact_mut(into.each)) {
+    for (b, into) in b.numbers.chunks_exact(b.each).zip(into.numbers.chunks_exact_mut(a.each)) {
         column::<V>(a, b, into);
+    }
+}
+
+#[inline(always)]
+fn normalized<V: Real>([high, low]: [V; 2]) -> [V; 2] {
+    let (high, low) = quick_two_sum(high, low);
+    [high, low]
+}
+
+#[inline(always)]
+fn scale_body<V: Vector8>(factor: DoubleDouble, numbers: &mut [Eight]) {
+    let (high, low) = factor.parts();
+    let factor = [V::splat(high), V::splat(low)];
+    for number in numbers {
+        *number = normalized(product(number.map(V::load), factor)).map(V::store);
+    }
+}
+
+#[inline(always)]
+fn set_powers_body<V: Vector8>(x: DoubleDouble, into: &mut [Eight]) {
+    let (high, low) = x.parts();
+    let mut square = [V::splat(high), V::splat(low)];
+    let mut powers = [V::splat(1.0), V::zero()];
+    // By the binary digits of the exponents.
+    for digit in 0..WIDTH.trailing_zeros() {
+        let [of_high, of_low] = square.map(V::store);
+        let (mut high, mut low) = (Lanes::splat(1.0), Lanes::zero());
+        for lane in (0..WIDTH).filter(|lane| lane >> digit & 1 == 1) {
+            (high.0[lane], low.0[lane]) = (of_high.0[lane], of_low.0[lane]);
+        }
+        powers = normalized(product(powers, [V::load(high), V::load(low)]));
+        square = normalized(product(square, square));
+    }
+    for into in into {
+        *into = powers.map(V::store);
+        powers = normalized(product(powers, square));
     }
 }
 
@@ -124,6 +205,8 @@ fn series_body<V: Vector8>(
 }
 
 tiered! {
+    fn scale[][](factor: DoubleDouble, numbers: &mut [Eight]) = scale_body;
+    fn set_powers[][](x: DoubleDouble, into: &mut [Eight]) = set_powers_body;
     fn multiply[][](a: &Columns, b: &Columns, into: &mut Columns) = multiply_body;
     fn sum_series[][](a: &Columns, x: DoubleDouble, inverses: &[DoubleDouble], into: (&mut Columns, &mut [Columns; 2])) = series_body;
 }

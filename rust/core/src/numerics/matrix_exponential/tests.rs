@@ -1,3 +1,4 @@
+use super::propagator::Propagator;
 use super::*;
 
 fn flow(rows: &[&[f64]], longest: f64) -> MatrixExponential {
@@ -67,4 +68,33 @@ fn times_add() {
 fn times_that_leave_no_digit_give_no_numbers() {
     let mut turning = flow(&[&[0.0, 1.0], &[-1.0, 0.0]], 1.0);
     assert!(turning.apply((1e30, 0.0), &[1.0, 0.0])[0].is_nan());
+}
+
+/// A frame that turns with ω = 0.6 about an axis, in which things fall along it.
+fn frame() -> Vec<DoubleDouble> {
+    let mut rates = vec![DoubleDouble::zero(); 49];
+    let mut set = |row: usize, column: usize, rate: f64| rates[row * 7 + column] = DoubleDouble::from(rate);
+    let of_axes =
+        [(3, 0, 0.36), (4, 1, 0.36), (3, 4, 1.2), (4, 3, -1.2), (5, 6, -0.9), (3, 6, -0.18), (4, 6, 0.36)];
+    for (row, column, rate) in [(0, 3, 1.0), (1, 4, 1.0), (2, 5, 1.0)].into_iter().chain(of_axes) {
+        set(row, column, rate);
+    }
+    rates
+}
+
+/// A propagator moves vectors as the flow of one does. Numbers that grow with time are sums of such that grow with its square,
+/// whose rounding grows with time once more.
+#[test]
+fn many_vectors_move_as_one() {
+    let y = [1.0, 0.2, 0.3, 0.1, -0.5, 0.2, 1.0];
+    let times = [0.0, 1e-9, 0.37, 25.3, 1e3, 1e3 + 0.37, 1e6, 1e6 + 0.37];
+    let (mut one, mut many) = (MatrixExponential::new(frame(), 7, 1.0), Propagator::new(frame(), 7, 1.0));
+    many.set_times(&times.map(DoubleDouble::from));
+    for (index, t) in times.into_iter().enumerate() {
+        let wanted = one.unrounded((t, 0.0), &y);
+        for (found, wanted) in many.moved(index, &y).into_iter().zip(wanted) {
+            let off = (found - wanted).to_f64().abs();
+            assert!(off <= 1e-31 * (1.0 + t).powi(3), "{t}: {off:e}");
+        }
+    }
 }

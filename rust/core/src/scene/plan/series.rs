@@ -54,7 +54,7 @@ fn turns_linearly(forces: &[Arc<dyn ForceTerm>]) -> bool {
     let back = |force: &Arc<dyn ForceTerm>| {
         force.as_harmonic().is_some() || force.as_magnetic().is_some() || force.as_rotating().is_some()
     };
-    forces.iter().all(|force| force.is_linear()) && forces.iter().any(back)
+    forces.iter().all(|force| force.as_linear().is_some()) && forces.iter().any(back)
 }
 
 /// Refuses forces without series, and bodies that they do not serve.

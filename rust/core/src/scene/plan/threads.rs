@@ -1,7 +1,7 @@
 //! How the work of a plan is shared out over threads: over units or copies, or inside a force evaluation, and where it is so
 //! little that waking a thread would cost more.
 
-use super::super::closed_form::rows_per_chunk;
+use super::super::closed_form::Cut;
 use super::super::events::Event;
 use super::super::request::Request;
 use super::Plan;
@@ -23,7 +23,8 @@ impl Plan {
         if !self.solutions.integrates() {
             let rows = self.copies.saturating_mul(request.times.len());
             let work = rows.saturating_mul(self.particles);
-            let threads = threads.min(rows.div_ceil(rows_per_chunk(self.particles)));
+            let cut = Cut::new(self.particles, self.copies, request.times.len(), threads);
+            let threads = threads.min(cut.parts());
             return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
         }
         let units = self.copies * self.watched_kinds().len();
