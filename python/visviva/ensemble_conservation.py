@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
+from visviva._endings import interrupted_and_failed
 from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.conservation import ROWS, Conservation, Drift, conservation_of, row_of
 from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
-from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
 
-#: Copies that ended so did what was asked.
-_WHOLE = (Status.OK, Status.STOPPED)
 _NUMBERS = tuple(each.name for each in fields(Drift) if each.name != "name")
 
 
@@ -103,7 +101,7 @@ class EnsembleConservation(Shown):
     about : str
         The reference point of the angular momentum.
     status : ndarray of int8, shape (B,)
-        How each copy ended, values of `Status`. The drifts of one that failed are those up to there.
+        How each copy ended, values of `Status`. The drifts of one that failed or was interrupted are those up to there.
 
     Notes
     -----
@@ -191,8 +189,10 @@ class EnsembleConservation(Shown):
             numbers = (f"{each[copy]:.1e}" for each in (row.max, row.end, row.rms))
             rows.append((row.name, *numbers, f"{row.scale[copy]:.6g}", str(copy)))
         header = ("", "max", "end", "rms", "relative to", "copy")
-        failed = int((~np.isin(self.status, _WHOLE)).sum())
-        upto = f", of which {failed} failed, told up to there" if failed else ""
+        interrupted, failed = interrupted_and_failed(self.status)
+        short = (failed, "failed"), (interrupted, "was interrupted" if interrupted == 1 else "were interrupted")
+        ended = " and ".join(f"{number} {how}" for number, how in short if number)
+        upto = f", of which {ended}, told up to there" if ended else ""
         title = f"Conservation in {count(len(self.virial), 'copy', 'copies')}{upto}: the largest drifts"
         hints = dict.fromkeys(hint for each in self._copies for hint in each._hints)
         return Sheet(title, rows, header, "\n".join(hints))
