@@ -223,6 +223,12 @@ ONE = np.ones((2, 1, 3))
         ({"mass": [[2.0], [1.0]]}, "mass: expected the masses of rigid bodies as they are, or moments="),
         ({"mass": [[1.0], [0.0]], "moments": ONE}, "mass: expected positive masses .* that of top of copy 1 is 0.0"),
         ({"mass": np.ones((3, 1)), "moments": ONE}, "moments: expected 3 copies like mass, got 2"),
+        ({"velocity": 0.1 * ONE * [[[0.0]], [[1.0]]]}, r"velocity: .* that of top of copy 1 is \[0\.1, 0\.1, 0\.1\]"),
+        ({"moments": ONE, "velocity": 0.1 * ONE}, r"velocity: .* that of top of copy 0 is \[0\.1, 0\.1, 0\.1\]"),
+        (
+            {"moments": ONE, "angular_velocity": 1.7e308 * ONE * [[[0.0]], [[1.0]]]},
+            r"pivot: expected a center whose speed is within float64 \(top of copy 1\)",
+        ),
     ],
 )
 def test_refused(given: dict[str, Any], message: str) -> None:
@@ -256,6 +262,13 @@ def test_a_warning_names_the_copy_by_its_place_among_all(copy: int) -> None:
     copies = vv.Scene(top, vv.UniformField((0.0, 0.0, -1.0))).ensemble(moments=kinds, angular_velocity=spins)
     with pytest.warns(vv.AccuracyWarning, match=f"in copy {copy}, the energy"):
         copies.run(20.0, method="rk4", dt=0.3)
+
+
+def test_moments_whose_ratio_is_no_number_are_told_without_a_complaint_of_numpy() -> None:
+    top = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5], pivot=[0.0, 0.0, -1.0]), WEIGHT)
+    copies = top.ensemble(moments=[[[1.0, 2.0, 2.5]], [[5e-324, 5e-324, 5e-324]]])
+    with pytest.warns(vv.AccuracyWarning, match="of copy 1 is inf times the least"):
+        copies.run(1.0)
 
 
 def test_copies_that_have_not_begun_are_where_the_scene_has_them() -> None:
