@@ -15,7 +15,7 @@ from visviva._endings import interrupted_and_failed
 from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import count
-from visviva.conservation import ROWS, Conservation, Drift, conservation_of, row_of
+from visviva.conservation import ROWS, Conservation, Drift, conservation_of, has_rows, row_of
 from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.ensemble_trajectory import EnsembleTrajectory
-    from visviva.trajectory import Trajectory
 
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
 
@@ -200,7 +199,7 @@ class EnsembleConservation(Shown):
 
 def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:
     """The table of an ensemble: that of each copy that has a row, NaN of one that has none."""
-    found = [conservation_of(copy, about) if _has_rows(copy) else None for copy in out]
+    found = [conservation_of(copy, about) if has_rows(copy) else None for copy in out]
     # Where no copy has a row, that of the first is refused.
     known = next((each for each in found if each is not None), None) or conservation_of(out[0], about)
     none = np.nan
@@ -224,10 +223,6 @@ def _of_copies(found: tuple[Conservation, ...], status: NDArray[np.int8]) -> Ens
     virial = np.array([each.virial for each in found])
     virial.setflags(write=False)
     return EnsembleConservation(**drifts, virial=virial, about=found[0].about, status=status, _copies=found)
-
-
-def _has_rows(copy: Trajectory) -> bool:
-    return any(bool(np.isfinite(copy._column(name)).any()) for name in copy.recorded[:1])
 
 
 def _together(rows: Sequence[Drift]) -> DriftOfCopies:
