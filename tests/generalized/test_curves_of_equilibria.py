@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva.generalized._ground import LevelGround
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,6 +41,24 @@ def test_the_ring_of_a_mexican_hat_is_a_dozen_places_all_around(size: float) -> 
         turns = np.sort([np.arctan2(*each.position) for each in ring])
         # Evenly twelve would be π/6 apart; nowhere is a gap of a quarter turn.
         assert np.diff(np.append(turns, turns[0] + 2.0 * np.pi)).max() < 0.5 * np.pi
+
+
+@pytest.mark.parametrize("radius", [1e-3, 0.05, 1.0])
+def test_a_ring_goes_on_whatever_the_size_of_what_is_beside_it(radius: float) -> None:
+    """V = (q²/r² − 1)² among places of size 1: steps of a fiftieth of that lead over a small ring, not along it."""
+
+    def forces(q: Any) -> tuple[Any, Any]:
+        over = (q @ q.T).diagonal() / radius**2 - 1.0
+        along = np.einsum("si,sj->sij", q, q) / radius**2
+        return -4.0 * over[:, None] * q / radius**2, (4.0 * over[:, None, None] * np.eye(2) + 8.0 * along) / radius**2
+
+    def balanced(q: Any) -> Any:
+        return np.abs(forces(q)[0]).max(axis=1) < 1e-12 / radius  # of 1/r: rounding
+
+    ground = LevelGround(forces, balanced, np.ones(2, dtype=bool))
+    turns = np.linspace(0.1, 6.2, 7)
+    ring = radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    assert ground.goes_on(np.concatenate([ring, np.zeros((1, 2))]), np.ones(2)).tolist() == [1] * 7 + [0]
 
 
 def test_rings_beside_each_other_are_told_apart() -> None:

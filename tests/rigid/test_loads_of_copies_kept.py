@@ -80,6 +80,27 @@ def test_files_of_copies_under_the_same_forces_are_as_before(tmp_path: Path) -> 
     assert loaded.ensemble.body_forces == (vv.Scene(PAIR, ANCHORED).body_forces,) * 2
 
 
+def test_a_file_has_what_acts_on_copies_once_of_all_that_share_it(tmp_path: Path) -> None:
+    """Two torques by turns are two sets, whoever made the forces of a copy; one in all copies is that of the scene."""
+
+    def kept(torques: list[list[float]], first: int = 0) -> Any:
+        copies = vv.Scene(PAIR, TORQUE, DRAG).ensemble(parameters={TORQUE: {"torque": torques}})[first:]
+        copies.run(t=0.1).save(tmp_path / "run.npz")
+        with np.load(tmp_path / "run.npz") as file:
+            return json.loads(file["header"].tobytes())["rigid"]
+
+    one, other = [0.1, 0.0, 0.0], [0.0, 0.2, 0.0]
+    for first in (0, 1):
+        header = kept([one, other, one, other, one], first)
+        sets, of_copy = header["own_forces"]
+        assert of_copy == [0, 1, 0, 1, 0][: 5 - first]
+        assert [loads[0]["torque"] for loads in sets] == ([one, other] if first == 0 else [other, one])
+        assert header["forces"] == sets[0]
+    same = kept([other] * 3)
+    assert "own_forces" not in same
+    assert same["forces"][0]["torque"] == other
+
+
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
