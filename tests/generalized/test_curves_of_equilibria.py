@@ -34,7 +34,8 @@ def test_the_ring_of_a_mexican_hat_is_a_dozen_places_all_around(size: float) -> 
         ring = [each for each in found if each.continuum == 1]
         assert len(ring) == 12
         for each in ring:
-            # V'' = 8/size²; places are told to 1e-8 of their size.
+            # Places are told to 1e-8 of their size; V″ = (12 q²/size² − 4)/size² is 8/size² there and changes by three
+            # times that, its root by half of it.
             assert np.hypot(*each.position) == pytest.approx(size, rel=1e-8, abs=0)
             assert each.frequencies == pytest.approx([np.sqrt(8.0) / size], rel=1e-7, abs=0)
             assert each.stable
@@ -124,6 +125,7 @@ def test_along_a_valley_that_falls_slowly_there_is_one_place() -> None:
     for form in both_forms(lambda q: (q[1] - q[0] ** 2) ** 2 + 1e-6 * q[0] ** 2):
         (found,) = form.equilibria()
         assert (found.position.tolist(), found.stable, found.continuum) == ([0.0, 0.0], True, 0)
+        # The place is exact and V″ diagonal there, 2e-6 and 2: some roundings of each by itself, and none by the other.
         assert found.frequencies == pytest.approx(np.sqrt([2e-6, 2.0]), rel=1e-12, abs=0.0)
 
 
@@ -159,7 +161,7 @@ def test_a_circle_on_a_sphere_is_a_dozen_places() -> None:
     found = system.equilibria()
     assert Counter((each.continuum, each.stable) for each in found) == {(0, False): 2, (1, True): 12}
     for each in found:
-        # Places are told to 1e-8 of their size.
+        # Places are told to 1e-8 of their size; 2 (1 − z²) changes by 4/3 of that at z = ½, its root by half of it.
         assert each.position[2] == pytest.approx(0.5 if each.stable else np.sign(each.position[2]), rel=1e-8, abs=0)
         if each.stable:
             assert each.frequencies == pytest.approx([np.sqrt(1.5)], rel=1e-7, abs=0)
