@@ -12,6 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from visviva._long_arrays import all_finite, as_float64
 from visviva._text import article
 from visviva.errors import InvalidInput
 
@@ -103,10 +104,10 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
         _check_shape(name, array.shape, shape, {} if sizes is None else sizes)
     if ready is None:
         ready = _ready(array)  # as arrays of lists are
-    result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"]) if ready is None else ready
-    finite = np.isfinite(result)
-    if np.count_nonzero(finite) < finite.size:
-        raise InvalidInput(name, f"expected finite numbers, but {_first(name, result, ~finite)}; remove or replace it")
+    result = as_float64(name, array) if ready is None else ready
+    if not all_finite(result):
+        first = _first(name, result, ~np.isfinite(result))
+        raise InvalidInput(name, f"expected finite numbers, but {first}; remove or replace it")
     return result
 
 

@@ -33,7 +33,8 @@ def warn_of_lost_spins(asked: _core._Request, *, ensemble: bool) -> None:
     if rigid is None:
         return
     moments = rigid["moments"]
-    spread = moments.max(axis=-1) / np.where(moments > 0.0, moments, np.inf).min(axis=-1)
+    with np.errstate(over="ignore"):
+        spread = moments.max(axis=-1) / np.where(moments > 0.0, moments, np.inf).min(axis=-1)
     lost = _STEPS * np.finfo(float).eps * spread
     copy, body = np.unravel_index(int(np.argmax(lost)), lost.shape)
     if not lost[copy, body] > max(asked["rtol"], _TOLERATED):

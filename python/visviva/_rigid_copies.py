@@ -177,11 +177,15 @@ def core_rigid_of_copies(
         follows = rotate(core_rigid["orientation"], np.cross(core_rigid["angular_velocity"], arms))
         size = 1e-9 * np.abs(follows).max(axis=-1)
         apart = np.abs(full["velocity"][:, -len(rigid) :] - follows).max(axis=-1)
-        if (
-            "velocity" in given
-            and (rigid.pivoted & (apart > size) & full["velocity"][:, -len(rigid) :].any(axis=-1)).any()
-        ):
-            raise InvalidInput("velocity", "expected 0 for bodies with fixed points, or what follows from their spins")
+        wrong = rigid.pivoted & (apart > size) & full["velocity"][:, -len(rigid) :].any(axis=-1)
+        if "velocity" in given and wrong.any():
+            copy, body = np.argwhere(wrong)[0]
+            came = full["velocity"][copy, body - len(rigid)].tolist()
+            raise InvalidInput(
+                "velocity",
+                f"expected 0 for bodies with fixed points, or what follows from their spins, "
+                f"{follows[copy, body].tolist()}, but that of {body_label(body, rigid.names)} of copy {copy} is {came}",
+            )
         moving = full["velocity"].copy()
         centers = moving[:, -len(rigid) :]
         # What a run gives stays as it is, which is that but for roundings.

@@ -8,7 +8,6 @@ momenta that cancel in it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import fsum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from visviva._text import count
 from visviva._turning import spin_scale
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
-from visviva.invariants import conserved, internal_motion, invariants_of, kept_by_forces, reference_point
+from visviva.invariants import conserved, internal_motion, invariants_of, kept_by_forces, reference_point, summed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -46,7 +45,8 @@ class Drift(Record):
     scale : float
         What `max`, `end` and `rms` are divided by, in the user's units.
     max, end, rms : float
-        Largest, last and root-mean-square distance from the initial value, over `scale`.
+        Largest, last and root-mean-square distance from the initial value, over `scale`. Infinite, or NaN where it is
+        not known, of what is beyond float64.
     slope : float
         Least-squares growth of that distance per unit of time, over `scale`: near zero where the
         error is bounded.
@@ -193,10 +193,19 @@ def row_of(name: str) -> str:
     return one_of("name", name.replace(" ", "_") if isinstance(name, str) else name, ROWS)
 
 
+def has_rows(trajectory: Trajectory) -> bool:
+    """Whether there is a row of what was recorded, which a copy that failed before its first has not."""
+    return any(not np.isnan(trajectory._column(name)).all() for name in trajectory.recorded[:1])
+
+
+# What is beyond float64 is infinite, or NaN where its drift is not known.
+@np.errstate(over="ignore", invalid="ignore")
 def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
     """The table of a trajectory."""
     scene = trajectory.scene
     start = invariants_of(scene, about)
+    if not has_rows(trajectory):
+        raise InvalidInput("record", "there is no row from which to compute drifts")
     point = reference_point(about)
     mass, position, velocity = scene.particles.mass, scene.particles.position, scene.particles.velocity
     origin = start.center_of_mass if point is None else point
@@ -217,7 +226,9 @@ def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Co
         angular = trajectory.angular_momentum
     else:
         angular = trajectory.angular_momentum_about("center_of_mass" if point is None else point)
-    uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
+    # Where the momentum is beyond float64, how the center moves is not known.
+    moving = np.where(np.isfinite(start.center_of_mass_velocity), start.center_of_mass_velocity, np.nan)
+    uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, moving)
     return Conservation(
         energy=_drift(
             "energy", t, trajectory.energy - start.energy, energy_scale, conserved=conserved["energy"] and not lost
@@ -226,14 +237,14 @@ def conservation_of(trajectory: Trajectory, about: ArrayLike | str | None) -> Co
             "momentum",
             t,
             trajectory.momentum - start.momentum,
-            fsum(mass * _lengths(velocity)),
+            summed(mass * _lengths(velocity)),
             conserved=closed,
         ),
         angular_momentum=_drift(
             "angular momentum",
             t,
             angular - start.angular_momentum,
-            fsum(mass * distances * speeds) + spin_scale(scene),
+            summed(mass * distances * speeds) + spin_scale(scene),
             conserved=steady and not merged,
         ),
         center_of_mass=_drift("center of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
@@ -254,9 +265,9 @@ def _lengths(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale: float, *, conserved: bool) -> Drift:
     sizes = np.abs(change) if change.ndim == 1 else _lengths(change)
-    reached = np.isfinite(sizes)
-    if not reached.any():
-        raise InvalidInput("record", f"there is no row from which to compute the drift of {name}")
+    reached = ~np.isnan(sizes)
+    if not reached.any() or not np.isfinite(scale):
+        return Drift(name, scale, max=np.nan, end=np.nan, rms=np.nan, slope=np.nan, conserved=conserved)
     divisor = scale if scale > 0.0 else 1.0
     sizes, times = sizes[reached] / divisor, t[reached]
     centered = times - times.mean()
@@ -266,7 +277,7 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
         scale=divisor,
         max=float(sizes.max()),
         end=float(sizes[-1]),
-        rms=float(np.sqrt(np.mean(sizes * sizes))),
+        rms=float(_lengths(sizes) / np.sqrt(len(sizes))),
         slope=float(centered @ sizes) / spread if spread > 0.0 else 0.0,
         conserved=conserved,
     )
@@ -286,7 +297,7 @@ def _virial(trajectory: Trajectory, closed: bool) -> float:
     weights = np.abs(np.diff(t))
 
     def mean(values: NDArray[np.float64]) -> float:
-        return fsum(weights * (values[1:] + values[:-1]) / 2.0) / fsum(weights)
+        return summed(weights * (values[1:] + values[:-1]) / 2.0) / summed(weights)
 
     twice = mean(2.0 * kinetic)
     return (twice + mean(sums["virial"])) / twice if twice > 0.0 else float("nan")

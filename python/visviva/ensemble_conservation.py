@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
+from visviva._endings import interrupted_and_failed
 from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
 from visviva._text import count
-from visviva.conservation import ROWS, Conservation, Drift, conservation_of, row_of
+from visviva.conservation import ROWS, Conservation, Drift, conservation_of, has_rows, row_of
 from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
-from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,12 +25,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.ensemble_trajectory import EnsembleTrajectory
-    from visviva.trajectory import Trajectory
 
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
 
-#: Copies that ended so did what was asked.
-_WHOLE = (Status.OK, Status.STOPPED)
 _NUMBERS = tuple(each.name for each in fields(Drift) if each.name != "name")
 
 
@@ -103,7 +100,7 @@ class EnsembleConservation(Shown):
     about : str
         The reference point of the angular momentum.
     status : ndarray of int8, shape (B,)
-        How each copy ended, values of `Status`. The drifts of one that failed are those up to there.
+        How each copy ended, values of `Status`. The drifts of one that failed or was interrupted are those up to there.
 
     Notes
     -----
@@ -191,8 +188,10 @@ class EnsembleConservation(Shown):
             numbers = (f"{each[copy]:.1e}" for each in (row.max, row.end, row.rms))
             rows.append((row.name, *numbers, f"{row.scale[copy]:.6g}", str(copy)))
         header = ("", "max", "end", "rms", "relative to", "copy")
-        failed = int((~np.isin(self.status, _WHOLE)).sum())
-        upto = f", of which {failed} failed, told up to there" if failed else ""
+        interrupted, failed = interrupted_and_failed(self.status)
+        short = (failed, "failed"), (interrupted, "was interrupted" if interrupted == 1 else "were interrupted")
+        ended = " and ".join(f"{number} {how}" for number, how in short if number)
+        upto = f", of which {ended}, told up to there" if ended else ""
         title = f"Conservation in {count(len(self.virial), 'copy', 'copies')}{upto}: the largest drifts"
         hints = dict.fromkeys(hint for each in self._copies for hint in each._hints)
         return Sheet(title, rows, header, "\n".join(hints))
@@ -200,7 +199,7 @@ class EnsembleConservation(Shown):
 
 def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:
     """The table of an ensemble: that of each copy that has a row, NaN of one that has none."""
-    found = [conservation_of(copy, about) if _has_rows(copy) else None for copy in out]
+    found = [conservation_of(copy, about) if has_rows(copy) else None for copy in out]
     # Where no copy has a row, that of the first is refused.
     known = next((each for each in found if each is not None), None) or conservation_of(out[0], about)
     none = np.nan
@@ -224,10 +223,6 @@ def _of_copies(found: tuple[Conservation, ...], status: NDArray[np.int8]) -> Ens
     virial = np.array([each.virial for each in found])
     virial.setflags(write=False)
     return EnsembleConservation(**drifts, virial=virial, about=found[0].about, status=status, _copies=found)
-
-
-def _has_rows(copy: Trajectory) -> bool:
-    return any(bool(np.isfinite(copy._column(name)).any()) for name in copy.recorded[:1])
 
 
 def _together(rows: Sequence[Drift]) -> DriftOfCopies:

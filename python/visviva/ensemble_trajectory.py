@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 
 from visviva._continuation import continuation_after, with_continuation
+from visviva._endings import endings
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
@@ -136,9 +137,8 @@ class EnsembleTrajectory(Recorded):
         return (self[index] for index in range(len(self)))
 
     def __repr__(self) -> str:
-        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
         copies = count(len(self), "copy", "copies")
-        return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
+        return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {endings(self.status)})"
 
     def _sheet(self) -> Sheet:
         kinds = np.unique(self.status, return_counts=True)
@@ -204,7 +204,8 @@ class EnsembleTrajectory(Recorded):
         Raises
         ------
         visviva.InvalidInput
-            If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
+            If copies failed, were stopped or interrupted, so that they do not share a time; ``out[i].final`` works for
+            each.
 
         Examples
         --------
@@ -216,10 +217,9 @@ class EnsembleTrajectory(Recorded):
         (2, 1.0)
         """
         if self.status.any():
-            failed = np.flatnonzero(self.status)[:8].tolist()
-            raise InvalidInput(
-                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
-            )
+            which = np.flatnonzero(self.status)[:8].tolist()
+            why = f"copies {which} failed, were stopped or interrupted, so the copies do not share a time"
+            raise InvalidInput("final", f"{why}; use out[i].final")
         last = self._result["final"]
         own: dict[str, Any] = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
         first = {name: array[0] for name, array in own.items()}

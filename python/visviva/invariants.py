@@ -150,12 +150,15 @@ def internal_motion(
     """Kinetic energy and angular momentum of many states in their center-of-mass frames."""
     total = fsum(scene.particles.mass)
     moments = conserved(scene, position, velocity, np.zeros(3), ["momentum", "center_of_mass"])
-    relative_position = position - moments["center_of_mass"][:, None]
-    relative_velocity = velocity - (moments["momentum"] / total)[:, None]
+    with np.errstate(over="ignore", invalid="ignore"):
+        relative_position = position - moments["center_of_mass"][:, None]
+        relative_velocity = velocity - (moments["momentum"] / total)[:, None]
     wanted = ["kinetic_energy", "angular_momentum"]
     return conserved(scene, relative_position, relative_velocity, np.zeros(3), wanted, turning)
 
 
+# What is beyond float64 is infinite, and NaN where it is not known.
+@np.errstate(over="ignore", invalid="ignore")
 def invariants_of(scene: Scene, about: ArrayLike | str | None) -> Invariants:
     """Everything at the state of a scene."""
     p = scene.particles
@@ -185,15 +188,24 @@ def invariants_of(scene: Scene, about: ArrayLike | str | None) -> Invariants:
         momentum=momentum,
         angular_momentum=spin if point is None else sums["angular_momentum"][0],
         spin=spin,
-        torque=np.array([fsum(column) if np.isfinite(column).all() else np.nan for column in torques.T]),
+        torque=np.array([summed(column) if np.isfinite(column).all() else np.nan for column in torques.T]),
         kinetic_energy=float(sums["kinetic_energy"][0]),
         potential_energy=float(sums["potential_energy"][0]),
         energy=float(sums["energy"][0]),
         # Its square may overflow where the energy does not.
-        center_of_mass_kinetic_energy=fsum(momentum * (momentum / total)) / 2.0,
+        center_of_mass_kinetic_energy=summed(momentum * (momentum / total)) / 2.0,
         internal_kinetic_energy=float(internal["kinetic_energy"][0]),
         virial=float(sums["virial"][0]) if "virial" in sums else np.nan,
     )
+
+
+def summed(values: ArrayLike) -> float:
+    """The sum of numbers, rounded once; infinite or NaN where they or it are."""
+    try:
+        return fsum(np.ravel(values))
+    except (OverflowError, ValueError):  # beyond float64, and of infinities of both signs
+        with np.errstate(over="ignore", invalid="ignore"):
+            return float(np.sum(values))
 
 
 def __dir__() -> list[str]:

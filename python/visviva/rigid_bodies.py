@@ -203,7 +203,8 @@ class RigidBodies(FramedBodies, Shown):
         with np.errstate(over="ignore", invalid="ignore"):
             follows = np.cross(self.angular_velocity, arm)
             if not np.isfinite(follows).all():
-                raise InvalidInput("pivot", "expected a center whose speed is within float64; choose other units")
+                of = body_suffix(int(np.argwhere(~np.isfinite(follows))[0, 0]), len(self), self.names)
+                raise InvalidInput("pivot", f"expected a center whose speed is within float64{of}; choose other units")
             follows = rotate(self.orientation, follows) + 0.0
             size = np.abs(self.angular_velocity).max(axis=-1) * np.abs(arm).max(axis=-1)
             apart = np.abs(self.velocity - follows).max(axis=-1)

@@ -157,7 +157,9 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
         raise InvalidInput("save_to", f"expected a folder in one that exists, got {str(folder)!r}; make that one first")
     folder.mkdir(exist_ok=True)
     # A state of no length: the scene, and what it goes on with itself.
-    scene.run(t=[scene.t0], record=("position", "velocity")).save(folder / _START)
+    start = RunRequest(t=[scene.t0], record=("position", "velocity")).to_core(scene._keywords, scene._names)
+    # What the run is to be warned of is told of the run itself.
+    Trajectory(scene, _core.run(start, threads=1, progress=None, ensemble=False)).save(folder / _START)
     written = {**_described(request, asked), "save_every": every}
     partial = folder / f"{_REQUEST}.part"
     with partial.open("w", encoding="utf-8") as file:

@@ -12,6 +12,10 @@ CALLS = {
     "r": "vv.potentials.Yukawa(1.0, 1.0).value(wide(10**8))",
     "position": "vv.orbits.elements(1.0, wide(6_000_000, 3), wide(6_000_000, 3))",
     "true_anomaly": "vv.orbits.state(1.0, pericenter=wide(2 * 10**7), eccentricity=0.1)",
+    "t": "vv.systems.pendulum().run(t=wide(13 * 10**7))",
+    "t of copies": "vv.systems.pendulum().ensemble(position=np.ones((4, 1))).run(t=wide(13 * 10**7))",
+    "t of a scene": "vv.problems.figure_eight().scene.run(t=wide(13 * 10**7))",
+    "t that is no float64 yet": "vv.systems.pendulum().run(t=wide(4 * 10**8))",
     "t_eval": "vv.solve_ivp(lambda t, y: -y, (0, 1), np.ones(10**5), t_eval=np.linspace(0, 1, 10**6))",
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva.generalized._ground import LevelGround
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,13 +34,32 @@ def test_the_ring_of_a_mexican_hat_is_a_dozen_places_all_around(size: float) -> 
         ring = [each for each in found if each.continuum == 1]
         assert len(ring) == 12
         for each in ring:
-            # V'' = 8/size²; places are told to 1e-8 of their size.
+            # Places are told to 1e-8 of their size; V″ = (12 q²/size² − 4)/size² is 8/size² there and changes by three
+            # times that, its root by half of it.
             assert np.hypot(*each.position) == pytest.approx(size, rel=1e-8, abs=0)
             assert each.frequencies == pytest.approx([np.sqrt(8.0) / size], rel=1e-7, abs=0)
             assert each.stable
         turns = np.sort([np.arctan2(*each.position) for each in ring])
         # Evenly twelve would be π/6 apart; nowhere is a gap of a quarter turn.
         assert np.diff(np.append(turns, turns[0] + 2.0 * np.pi)).max() < 0.5 * np.pi
+
+
+@pytest.mark.parametrize("radius", [1e-3, 0.05, 1.0])
+def test_a_ring_goes_on_whatever_the_size_of_what_is_beside_it(radius: float) -> None:
+    """V = (q²/r² − 1)² among places of size 1: steps of a fiftieth of that lead over a small ring, not along it."""
+
+    def forces(q: Any) -> tuple[Any, Any]:
+        over = (q @ q.T).diagonal() / radius**2 - 1.0
+        along = np.einsum("si,sj->sij", q, q) / radius**2
+        return -4.0 * over[:, None] * q / radius**2, (4.0 * over[:, None, None] * np.eye(2) + 8.0 * along) / radius**2
+
+    def balanced(q: Any) -> Any:
+        return np.abs(forces(q)[0]).max(axis=1) < 1e-12 / radius  # of 1/r: rounding
+
+    ground = LevelGround(forces, balanced, np.ones(2, dtype=bool))
+    turns = np.linspace(0.1, 6.2, 7)
+    ring = radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    assert ground.goes_on(np.concatenate([ring, np.zeros((1, 2))]), np.ones(2)).tolist() == [1] * 7 + [0]
 
 
 def test_rings_beside_each_other_are_told_apart() -> None:
@@ -105,6 +125,7 @@ def test_along_a_valley_that_falls_slowly_there_is_one_place() -> None:
     for form in both_forms(lambda q: (q[1] - q[0] ** 2) ** 2 + 1e-6 * q[0] ** 2):
         (found,) = form.equilibria()
         assert (found.position.tolist(), found.stable, found.continuum) == ([0.0, 0.0], True, 0)
+        # The place is exact and V″ diagonal there, 2e-6 and 2: some roundings of each by itself, and none by the other.
         assert found.frequencies == pytest.approx(np.sqrt([2e-6, 2.0]), rel=1e-12, abs=0.0)
 
 
@@ -140,7 +161,7 @@ def test_a_circle_on_a_sphere_is_a_dozen_places() -> None:
     found = system.equilibria()
     assert Counter((each.continuum, each.stable) for each in found) == {(0, False): 2, (1, True): 12}
     for each in found:
-        # Places are told to 1e-8 of their size.
+        # Places are told to 1e-8 of their size; 2 (1 − z²) changes by 4/3 of that at z = ½, its root by half of it.
         assert each.position[2] == pytest.approx(0.5 if each.stable else np.sign(each.position[2]), rel=1e-8, abs=0)
         if each.stable:
             assert each.frequencies == pytest.approx([np.sqrt(1.5)], rel=1e-7, abs=0)

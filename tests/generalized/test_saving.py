@@ -257,6 +257,6 @@ def test_copies_run_on_from_where_they_ended(method: Any, threads: int, tmp_path
 def test_copies_that_ended_at_times_of_their_own_run_on_one_by_one() -> None:
     many = vv.systems.pendulum().ensemble(position=[[0.5], [2.0]])
     out = many.run(3.0, events=[vv.events.coordinate("theta", terminal=True)])
-    with pytest.raises(vv.InvalidInput, match=r"copies \[0, 1\] failed or were stopped"):
+    with pytest.raises(vv.InvalidInput, match=r"copies \[0, 1\] failed, were stopped or interrupted"):
         _ = out.final
     assert out[0].final.t0 != out[1].final.t0

@@ -155,7 +155,7 @@ def test_own_parameters_and_bodies_without_charge() -> None:
     made = vv.Scene(particles, field, vv.LinearDrag(TAU))
     out = made.run(t=3.0)
     assert out.plan.solution == FLOW
-    # The one without a charge only slows down.
+    # The one without a charge only slows down; two roundings, of the exponential and of its argument.
     assert out.velocity[-1, 0, 1] == pytest.approx(math.exp(-3.0 / TAU), rel=4e-16, abs=0.0)
     copies = made.ensemble(parameters={"UniformMagneticField": {"B": [[0, 0, 1.0], [0, 0.5, 1.0]]}})
     together = copies.run(t=3.0)

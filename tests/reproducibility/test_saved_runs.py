@@ -51,6 +51,7 @@ CASES: dict[str, tuple[Callable[[], vv.Scene], dict[str, Any]]] = {
     "merged": (spheres, {"method": "leapfrog", "dt": 0.01, "collisions": "merge"}),
     "rigid": (rigid, {"method": "leapfrog", "dt": 0.01}),
     "rigid, in steps chosen by the scene": (pivoted, {}),
+    "rigid, by series": (pivoted, {"method": "taylor"}),
     "closed form": (lambda: vv.problems.kepler(e=0.5).scene, {}),
 }
 FIXED = [name for name, (_, how) in CASES.items() if "dt" in how and "collisions" not in how]
@@ -270,3 +271,11 @@ def test_what_is_no_such_run_is_refused_by_name(tmp_path: Path) -> None:
     (folder / "start.npz").unlink()
     with pytest.raises(vv.InvalidInput, match=r"^path: expected start.npz, .* put it back or run anew$"):
         vv.resume(folder)
+
+
+def test_a_run_that_is_written_is_warned_of_once(tmp_path: Path) -> None:
+    slender = vv.RigidBody(1.0, [1.0, 1.0, 1e-11], angular_velocity=[0.1, 0.2, 0.0])
+    scene = vv.Scene(slender, vv.AppliedTorque([0.01, 0.0, 0.0], frame="body"))
+    with pytest.warns(vv.AccuracyWarning, match="largest moment") as told:
+        scene.run(t=0.01, method="verner98", save_every=0.005, save_to=tmp_path / "run")
+    assert len(told) == 1

@@ -6,7 +6,6 @@ import numpy as np
 
 import visviva as vv
 
-COLUMNS = ("position", "velocity", "orientation", "angular_velocity", "energy", "angular_momentum")
 COPIES = 11
 
 PAIR = vv.RigidBodies(
@@ -103,11 +102,6 @@ def made_by_hand(scene: vv.Scene, parameters: dict[Any, dict[str, Any]], copy: i
 def bodies_of(scene: vv.Scene) -> list[Any]:
     free = len(scene.particles) - len(scene.rigid_bodies or ())
     return [*([scene.particles[:free]] if free else []), scene.rigid_bodies]
-
-
-def assert_same(found: Any, expected: Any, columns: tuple[str, ...] = COLUMNS) -> None:
-    for column in columns:
-        assert np.array_equal(getattr(found, column), getattr(expected, column)), column
 
 
 def with_method(how: dict[str, Any], scene: vv.Scene) -> dict[str, Any]:

@@ -1,16 +1,14 @@
 """Ensembles whose rigid bodies have masses and moments of inertia of their own: each copy as it is alone."""
 
-import pickle
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from copies_elsewhere import COLUMNS, assert_same, assert_same_elsewhere
 
 import visviva as vv
 
-COLUMNS = ("position", "velocity", "orientation", "angular_velocity", "energy", "angular_momentum")
 COPIES = 11
 TIMES = [0.1, 0.515]
 HOW: list[dict[str, Any]] = [
@@ -65,11 +63,6 @@ def copies_of(name: str, *, symmetries: bool, tensors: bool = False) -> vv.Ensem
     axes = vv.rigid.matrix(turns / np.linalg.norm(turns, axis=-1, keepdims=True))
     tensors_of_copies = np.einsum("cbij,cbj,cbkj->cbik", axes, own, axes)
     return scene.ensemble(mass=masses, inertia=0.5 * (tensors_of_copies + np.swapaxes(tensors_of_copies, -1, -2)))
-
-
-def assert_same(found: Any, expected: Any, columns: tuple[str, ...] = COLUMNS) -> None:
-    for column in columns:
-        assert np.array_equal(getattr(found, column), getattr(expected, column)), column
 
 
 @pytest.mark.parametrize("how", HOW, ids=lambda how: how.get("method", "auto"))
@@ -135,30 +128,7 @@ def test_a_free_body_wobbles_at_the_rate_of_its_moments() -> None:
 def test_elsewhere(tmp_path: Path, how: dict[str, Any], symmetries: bool) -> None:
     """Saved, pickled, cut, sent to executors and run on: the same copies."""
     copies = copies_of("heavy top", symmetries=symmetries)
-    out = copies.run(t=TIMES, **how)
-    on = out.final.run(t=1.0, **how)
-    out.save(tmp_path / "run.npz")
-    loaded = vv.load(tmp_path / "run.npz")
-    assert isinstance(loaded, vv.EnsembleTrajectory)
-    for other in (loaded, pickle.loads(pickle.dumps(out))):
-        assert list(other.ensemble) == list(copies)
-        assert_same(other.ensemble.run(t=TIMES, **how), out)
-        assert_same(other.final.run(t=1.0, **how), on)
-    assert_same(copies[3:9].run(t=TIMES, **how), out[3:9])
-    assert list(copies[3:9]) == [copies[member] for member in range(3, 9)]
-    for member in (0, 4, 10):
-        assert_same(on[member], copies[member].run(t=TIMES, **how).final.run(t=1.0, **how))
-    with ThreadPoolExecutor(2) as executor:
-        assert_same(copies.run(t=TIMES, executor=executor, **how), out)
-    table = out.to_pandas()
-    assert len(table) == 2 * COPIES
-    pandas = pytest.importorskip("pandas")
-    pytest.importorskip("pyarrow")
-    copies.run_to_parquet(t=TIMES, to=tmp_path / "run.parquet", copies_at_once=4, **how)
-    streamed = pandas.read_parquet(tmp_path / "run.parquet")
-    for column in table.columns:
-        if column in streamed:
-            assert np.array_equal(streamed[column], table[column]), column
+    assert_same_elsewhere(copies, TIMES, how, tmp_path)
 
 
 def test_events_of_copies_that_run_apart() -> None:
@@ -223,6 +193,12 @@ ONE = np.ones((2, 1, 3))
         ({"mass": [[2.0], [1.0]]}, "mass: expected the masses of rigid bodies as they are, or moments="),
         ({"mass": [[1.0], [0.0]], "moments": ONE}, "mass: expected positive masses .* that of top of copy 1 is 0.0"),
         ({"mass": np.ones((3, 1)), "moments": ONE}, "moments: expected 3 copies like mass, got 2"),
+        ({"velocity": 0.1 * ONE * [[[0.0]], [[1.0]]]}, r"velocity: .* that of top of copy 1 is \[0\.1, 0\.1, 0\.1\]"),
+        ({"moments": ONE, "velocity": 0.1 * ONE}, r"velocity: .* that of top of copy 0 is \[0\.1, 0\.1, 0\.1\]"),
+        (
+            {"moments": ONE, "angular_velocity": 1.7e308 * ONE * [[[0.0]], [[1.0]]]},
+            r"pivot: expected a center whose speed is within float64 \(top of copy 1\)",
+        ),
     ],
 )
 def test_refused(given: dict[str, Any], message: str) -> None:
@@ -256,6 +232,13 @@ def test_a_warning_names_the_copy_by_its_place_among_all(copy: int) -> None:
     copies = vv.Scene(top, vv.UniformField((0.0, 0.0, -1.0))).ensemble(moments=kinds, angular_velocity=spins)
     with pytest.warns(vv.AccuracyWarning, match=f"in copy {copy}, the energy"):
         copies.run(20.0, method="rk4", dt=0.3)
+
+
+def test_moments_whose_ratio_is_no_number_are_told_without_a_complaint_of_numpy() -> None:
+    top = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5], pivot=[0.0, 0.0, -1.0]), WEIGHT)
+    copies = top.ensemble(moments=[[[1.0, 2.0, 2.5]], [[5e-324, 5e-324, 5e-324]]])
+    with pytest.warns(vv.AccuracyWarning, match="of copy 1 is inf times the least"):
+        copies.run(1.0)
 
 
 def test_copies_that_have_not_begun_are_where_the_scene_has_them() -> None:

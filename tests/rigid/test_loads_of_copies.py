@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from loads_of_copies import CASES, COLUMNS, COPIES, DRAG, PAIR, WEIGHT, assert_same, made_by_hand, numbers, with_method
+from copies_elsewhere import COLUMNS, assert_same
+from loads_of_copies import CASES, COPIES, DRAG, PAIR, WEIGHT, made_by_hand, numbers, with_method
 
 import visviva as vv
 

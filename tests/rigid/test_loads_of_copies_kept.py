@@ -2,12 +2,12 @@
 
 import json
 import pickle
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from copies_elsewhere import assert_same, assert_same_elsewhere
 from loads_of_copies import (
     ANCHORED,
     CASES,
@@ -15,7 +15,6 @@ from loads_of_copies import (
     PAIR,
     TO_BODY,
     TORQUE,
-    assert_same,
     with_method,
 )
 
@@ -31,22 +30,11 @@ def test_elsewhere(tmp_path: Path, how: dict[str, Any], name: str) -> None:
     scene, parameters = CASES[name]
     how = with_method(how, scene)
     copies = scene.ensemble(parameters=parameters)
-    out = copies.run(t=TIMES, **how)
+    out, _, others = assert_same_elsewhere(copies, TIMES, how, tmp_path)
     assert out.final.body_forces == copies.body_forces
-    on = out.final.run(t=1.0, **how)
-    out.save(tmp_path / "run.npz")
-    loaded = vv.load(tmp_path / "run.npz")
-    assert isinstance(loaded, vv.EnsembleTrajectory)
-    for other in (loaded, pickle.loads(pickle.dumps(out))):
-        assert list(other.ensemble) == list(copies)
+    for other in others:
         assert other.ensemble.body_forces == copies.body_forces
-        assert_same(other.ensemble.run(t=TIMES, **how), out)
-        assert_same(other.final.run(t=1.0, **how), on)
-        assert_same(other, out)
-    assert_same(copies[3:9].run(t=TIMES, **how), out[3:9])
-    assert list(copies[3:9]) == [copies[copy] for copy in range(3, 9)]
     for copy in (0, 4, 10):
-        assert_same(on[copy], copies[copy].run(t=TIMES, **how).final.run(t=1.0, **how))
         assert out[copy].final.body_forces == copies.body_forces[copy]
     if how:  # From a node on it is one long run, to the bit, whoever kept the half of it.
         half, whole = copies.run(t=0.5, **how), copies.run(t=[0.5, 1.0], **how)
@@ -57,16 +45,7 @@ def test_elsewhere(tmp_path: Path, how: dict[str, Any], name: str) -> None:
             assert_same(begun.final.run(t=[0.5, 1.0], **how), whole)
             assert_same(begun.final[5:8].run(t=[0.5, 1.0], **how), whole[5:8])
             assert_same(begun.final[6].run(t=[0.5, 1.0], **how), whole[6])
-    with ThreadPoolExecutor(2) as executor:
-        assert_same(copies.run(t=TIMES, executor=executor, **how), out)
     assert str(copies.plan(t=1.0, **how).cost()) != ""
-    pandas = pytest.importorskip("pandas")
-    pytest.importorskip("pyarrow")
-    copies.run_to_parquet(t=TIMES, to=tmp_path / "run.parquet", copies_at_once=4, **how)
-    table, streamed = out.to_pandas(), pandas.read_parquet(tmp_path / "run.parquet")
-    for column in table.columns:
-        if column in streamed:
-            assert np.array_equal(streamed[column], table[column]), column
 
 
 def test_files_of_copies_under_the_same_forces_are_as_before(tmp_path: Path) -> None:
@@ -78,6 +57,27 @@ def test_files_of_copies_under_the_same_forces_are_as_before(tmp_path: Path) -> 
     loaded = vv.load(tmp_path / "run.npz")
     assert isinstance(loaded, vv.EnsembleTrajectory)
     assert loaded.ensemble.body_forces == (vv.Scene(PAIR, ANCHORED).body_forces,) * 2
+
+
+def test_a_file_has_what_acts_on_copies_once_of_all_that_share_it(tmp_path: Path) -> None:
+    """Two torques by turns are two sets, whoever made the forces of a copy; one in all copies is that of the scene."""
+
+    def kept(torques: list[list[float]], first: int = 0) -> Any:
+        copies = vv.Scene(PAIR, TORQUE, DRAG).ensemble(parameters={TORQUE: {"torque": torques}})[first:]
+        copies.run(t=0.1).save(tmp_path / "run.npz")
+        with np.load(tmp_path / "run.npz") as file:
+            return json.loads(file["header"].tobytes())["rigid"]
+
+    one, other = [0.1, 0.0, 0.0], [0.0, 0.2, 0.0]
+    for first in (0, 1):
+        header = kept([one, other, one, other, one], first)
+        sets, of_copy = header["own_forces"]
+        assert of_copy == [0, 1, 0, 1, 0][: 5 - first]
+        assert [loads[0]["torque"] for loads in sets] == ([one, other] if first == 0 else [other, one])
+        assert header["forces"] == sets[0]
+    same = kept([other] * 3)
+    assert "own_forces" not in same
+    assert same["forces"][0]["torque"] == other
 
 
 @pytest.mark.parametrize(
@@ -201,6 +201,7 @@ def test_rods() -> None:
     rod = vv.Scene(vv.RigidBody(1.0, [1.0, 1.0, 0.0]), driven)
     across, along = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     out = rod.ensemble(parameters={driven: {"torque": across}}).run(t=1.0)
+    # ω = τt/I of four steps, each of them a rounding or two; what it is not turned about stays 0.
     assert out.angular_velocity[:, -1, 0] == pytest.approx(np.array(across), rel=1e-14, abs=0.0)
     with pytest.raises(vv.InvalidInput, match="of copy 1: torque: expected a torque across the axis of body 0, a rod"):
         rod.ensemble(parameters={driven: {"torque": along}})
@@ -216,13 +217,14 @@ def test_rods_along_other_axes_than_that_of_the_scene(tmp_path: Path) -> None:
         moments=[[[0.0, 1.0, 1.0]], [[1.0, 1.0, 0.0]]],
     )
     out = copies.run(t=1.0)
+    # As above: τt/I, to some roundings.
     assert out.angular_velocity[:, -1, 0] == pytest.approx(np.array([[0, 0, 1.0], [0, 1.0, 0]]), rel=1e-14, abs=0.0)
     out.save(tmp_path / "run.npz")
     loaded = vv.load(tmp_path / "run.npz")
     assert isinstance(loaded, vv.EnsembleTrajectory)
     for other in (out, loaded, pickle.loads(pickle.dumps(out))):
         assert list(other.ensemble[:1]) == [copies[0]]
-        # Linear in time, as above.
+        # Linear in time, as above, over twice the steps.
         spin = other.final.run(t=2.0).angular_velocity[:, -1, 0]
         assert spin == pytest.approx(np.array([[0, 0, 2.0], [0, 2.0, 0]]), rel=1e-14, abs=0.0)
 

@@ -1,5 +1,6 @@
 """Bodies that torques turn, by Taylor series: alone under their weight, and beside all else that may act."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -166,6 +167,24 @@ def test_there_and_back() -> None:
     for name in ("top", "held in a well", "planet and moon"):
         start = SCENES[name].run(t=[0.0, 1.0], method="taylor")
         back = SCENES[name].run(t=5.0, method="taylor", rtol=1e-13).final.run(t=0.0, method="taylor", rtol=1e-13)
-        # Twice fifty steps of 1e-13.
+        # Places and turns of size 1: up to 65 steps there and back, of 1e-13 each at the most (they come to 1e-14).
         np.testing.assert_allclose(back.position[-1], start.position[0], rtol=0.0, atol=1e-11)
         np.testing.assert_allclose(back.orientation[-1], start.orientation[0], rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", ["top", "held in a well", "planet and moon"])
+def test_a_run_that_was_kept_is_it_and_goes_on_as_it_does(name: str, tmp_path: Path) -> None:
+    out = SCENES[name].run(t=np.linspace(0.0, 2.0, 5), method="taylor")
+    on = out.final.run(t=[2.5, 4.0], method="taylor")
+    out.save(tmp_path / "run.npz")
+    loaded = vv.load(tmp_path / "run.npz")
+    assert isinstance(loaded, vv.Trajectory)
+    assert loaded.plan == out.plan
+    assert loaded.plan.method == "taylor"
+    assert loaded.stats.steps == out.stats.steps
+    assert loaded.scene == out.scene
+    again = loaded.final.run(t=[2.5, 4.0], method="taylor")
+    for found, expected in ((loaded, out), (again, on), (loaded.scene.run(t=out.t, method="taylor"), out)):
+        assert found.recorded == expected.recorded
+        for column in ("t", *expected.recorded, "energy"):
+            assert np.array_equal(getattr(found, column), getattr(expected, column)), column

@@ -87,9 +87,15 @@ def test_the_smallest_angle_is_that_of_the_rainbow_beyond() -> None:
     ((energy, found),) = beyond(run(3.0, 1.0, "cm_angle").beam).items()
     assert energy == 3.0
     assert found == pytest.approx(greatest, rel=3e-9, abs=0.0)
-    circling = run(1.0, 1.0, "cm_angle")
-    assert circling.smallest_angle == np.pi
-    assert circling["cm_angle"].covered == (0.0, 0.0)
+    # What turns by more is known by the disc, but for a cell of its table: a twentieth of the angle.
+    low, high = run(3.0, 1.2, "cm_angle", n_events=10)["cm_angle"].covered
+    assert (greatest <= low <= 1.05 * greatest, high) == (True, np.pi)
+    # Twenty radii of the disc out, too.
+    for b_max in (1.0, 0.1):
+        circling = run(1.0, b_max, "cm_angle")
+        assert circling.smallest_angle == np.pi
+        assert beyond(circling.beam) == {1.0: np.pi}
+        assert circling["cm_angle"].covered == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -145,6 +151,17 @@ def test_of_a_spread_of_energies_the_greatest_rainbow_is_that_of_the_slowest() -
         least = greatest if tally.name == "cm_angle" else of_angle("recoil_energy", greatest, 3.1)
         assert (tally.reachable[tally.edges[:-1] < least] == 0.0).all()
         assert tally.reachable[-1] == 1.0
+
+
+def test_of_a_gaussian_the_slowest_is_six_deviations_down() -> None:
+    result = run(3.0, 1.2, "cm_angle", energy_spread=0.05, n_events=1000, bins=64)
+    ((_, found),) = beyond(result.beam).items()
+    b = np.linspace(1.3, 1.6, 20_001)
+    greatest = np.abs(vv.scattering.deflection_angle(ARGON, energy=0.8 * 2.7, impact_parameter=b)).max()
+    assert found == pytest.approx(greatest, rel=3e-9, abs=0.0)
+    # What all energies of the beam know is what the slowest does, but for a cell of a table: a twentieth of the angle.
+    low, high = result["cm_angle"].covered
+    assert (greatest <= low <= 1.05 * greatest, high) == (True, np.pi)
 
 
 def test_what_earlier_versions_counted_goes_on() -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
+from visviva._endings import endings
 from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
@@ -98,9 +99,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         self._columns: NDArray[np.float64] | None = None
 
     def __repr__(self) -> str:
-        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
         copies = count(len(self), "copy", "copies")
-        return f"GeneralizedEnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
+        return f"GeneralizedEnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {endings(self.status)})"
 
     def _sheet(self) -> Sheet:
         span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
@@ -219,7 +219,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         Raises
         ------
         InvalidInput
-            If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
+            If copies failed, were stopped or interrupted, so that they do not share a time; ``out[i].final`` works for
+            each.
 
         Examples
         --------
@@ -229,10 +230,9 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         (2, 1.0)
         """
         if self.status.any():
-            failed = np.flatnonzero(self.status)[:8].tolist()
-            raise InvalidInput(
-                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
-            )
+            which = np.flatnonzero(self.status)[:8].tolist()
+            why = f"copies {which} failed, were stopped or interrupted, so the copies do not share a time"
+            raise InvalidInput("final", f"{why}; use out[i].final")
         lasts = [self[member]._last for member in range(len(self))]
         states, n = np.array([state for _, state in lasts]), len(self.ensemble.system.coordinates)
         # The start that other copies of it would have is that of the first, as in scenes: where it was is long past.

@@ -11,6 +11,7 @@ import numpy as np
 from visviva._accuracy import times_may_be_coarse
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
+from visviva._long_arrays import first_turned_back, room_for
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._methods import check_atol, check_rtol, method_name
 from visviva.generalized._resolved import warn_if_unresolved, warn_of_coarse_times
@@ -110,14 +111,11 @@ class Runs(States):
             raise InvalidInput(
                 "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
             )
-        steps = np.diff(outputs, prepend=self.t0)
-        # The first that is not the start tells the direction.
-        steps *= next((np.sign(step) for step in steps if step), 1.0)
-        if (steps < 0.0).any():
-            wrong = int(np.argmax(steps < 0.0))
+        wrong = first_turned_back(self.t0, outputs)
+        if wrong is not None:
             before = outputs[wrong - 1] if wrong else self.t0
-            message = f"expected times in order from t0 = {self.t0:g} on, got {outputs[wrong]:g} after {before:g}"
-            raise InvalidInput("t", message)
+            came = f"got {outputs[wrong]:g} after {before:g} as t[{wrong}]"
+            raise InvalidInput("t", f"expected times in order from t0 = {self.t0:g} on, {came}")
         return outputs
 
     def run(
@@ -250,7 +248,9 @@ class Runs(States):
         # Far from the time zero, times within a run have fewer digits than the run itself.
         shift = span[0] if times_may_be_coarse(*span) and self._knows_no_time(asked) else 0.0
         if shift:
-            asked = asked | {"span": (0.0, span[1] - shift), "outputs": asked["outputs"] - shift}
+            with room_for("t", asked["outputs"].shape):
+                shifted = asked["outputs"] - shift
+            asked = asked | {"span": (0.0, span[1] - shift), "outputs": shifted}
         if progress is False:
             result = self._model.run(asked, states, parameters, threads, None)
         else:

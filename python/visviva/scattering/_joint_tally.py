@@ -165,10 +165,9 @@ class JointTally(OfStrata, Record):  # noqa: PLW1641 — as Tally
     def cross_section(self) -> CrossSection:
         """Differential cross section of both quantities together, averaged over each bin as far as it is reachable.
 
-        As `Tally.cross_section`: a bin that the edge of the disc cuts is averaged over its reachable part, which
-        `reachable` tells, and one that is not reached is NaN. Of one energy two quantities lie on a curve: bins beside
-        it are 0, and what bins on it tell goes with their size. A bin of which either quantity is reached whole has all
-        its events, also where the other is not.
+        As `Tally.cross_section`. Of one energy two quantities lie on a curve: bins beside it are 0, and what bins on it
+        tell goes with their size. A bin of which either quantity is reached whole has all its events, also where the
+        other is not.
 
         Returns
         -------

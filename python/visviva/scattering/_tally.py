@@ -271,14 +271,12 @@ class Tally(OfStrata, OfOneQuantity, Record):  # noqa: PLW1641 — it holds arra
         return measure(self.name, self.edges)
 
     def cross_section(self) -> CrossSection:
-        """Differential cross section averaged over each bin, as far as the bin is reachable.
+        """Differential cross section averaged over each bin, as far as the bin is `reachable`.
 
-        The disc ends at ``b_max``, so what lies beyond is missing near the forward direction, unless it ends where the
-        potential does. A bin that is cut there
-        is averaged over its reachable part, which `reachable` tells; a bin that is not reached is NaN, one that other
-        branches of the deflection function lead to from beyond the disc, as well as those within, too. Of a heavy
-        projectile (m₁ > m₂) two impact parameters lead to one laboratory angle: below ``covered[0]`` one of them is
-        beyond the disc, and bins that begin there are NaN, the cut one too.
+        A bin that the edge of the disc cuts is averaged over its reachable part, and one that is not reached is NaN, so
+        that forward directions are missing of a potential that does not end within ``b_max``. Of a heavy projectile
+        (m₁ > m₂) two impact parameters lead to one laboratory angle: below ``covered[0]`` one of them is beyond the
+        disc, and bins that begin there are NaN, the cut one too.
 
         Returns
         -------

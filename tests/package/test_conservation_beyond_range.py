@@ -1,0 +1,58 @@
+"""Conservation and invariants of what is beyond float64: infinite or not known, never a drift of zero."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ROWS = ("energy", "momentum", "angular momentum", "center of mass")
+
+
+def pair(mass: float, speed: float, *forces: vv.forces.Force) -> vv.Scene:
+    bodies = vv.Particles([mass, mass], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[speed, 0.0, 0.0], [0.0, speed, 0.0]])
+    return vv.Scene(bodies, *forces)
+
+
+@pytest.mark.parametrize(
+    ("mass", "speed", "known"),
+    [
+        (1.0, 1e200, {"momentum", "angular momentum", "center of mass"}),  # of an energy of 1e400
+        (1e200, 1e100, {"momentum", "angular momentum", "center of mass"}),
+        (1e200, 1e200, set()),  # of a momentum of 1e400, too
+    ],
+)
+def test_rows_beyond_float64_are_not_known_and_the_others_are(mass: float, speed: float, known: set[str]) -> None:
+    kept = pair(mass, speed).run(t=[0.0, 0.5, 1.0]).conservation()
+    for name in ROWS:
+        row = kept[name]
+        if name in known:
+            # Two free bodies: rounding of a few sums.
+            assert row.max == pytest.approx(0.0, rel=0.0, abs=1e-15), name
+        else:
+            assert np.isnan([row.max, row.end, row.rms, row.slope]).all(), name
+    assert "nan" in str(kept)
+
+
+def test_the_root_mean_square_of_drifts_whose_squares_overflow() -> None:
+    """A center of mass that a spring holds back from a way of 1e200: of the drifts 0 and d it is d/√2."""
+    row = pair(1e-200, 1e200, vv.Harmonic(1.0)).run(t=[0.0, 1.0]).conservation()["center of mass"]
+    assert row.end > 1e199
+    # Rounding of a root, a product and a quotient.
+    assert row.rms == pytest.approx(row.end / np.sqrt(2.0), rel=1e-15, abs=0.0)
+
+
+def test_an_energy_that_cancels_from_beyond_float64_has_no_relative_drift() -> None:
+    """T = −V = 1e310: what is left of them is less than what their rounding leaves, and no zero."""
+    bodies = vv.Particles([1e160], [[0.0, 0.0, -0.5]], [[1e75, 0.0, 0.0]])
+    scene = vv.Scene(bodies, vv.UniformField([0.0, 0.0, -1e150]))
+    start = scene.invariants()
+    assert (start.kinetic_energy, start.potential_energy) == (np.inf, -np.inf)
+    assert np.isnan(scene.run(t=[0.0, 1.0]).conservation()["energy"].max)
+
+
+def test_copies_beyond_float64_beside_others() -> None:
+    velocity = pair(1.0, 1.0).particles.velocity * np.reshape([1.0, 1e200], (2, 1, 1))
+    kept = pair(1.0, 1.0).ensemble(velocity=velocity).run(t=[0.0, 1.0]).conservation()
+    assert kept.energy.max[0] < 1e-15
+    assert np.isnan(kept.energy.max[1])
+    assert kept.energy.worst == 0
