@@ -10,7 +10,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "rust" / "core" / "src"
 
-# numerics ← expressions ← ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering
+# numerics ← expressions ← ode, potentials ← narrow ← forces ← nbody, rigid, generalized ← central ← scattering
 # ← closed_forms, conservation ← scene.
 # Rooms of one floor do not know each other.
 FLOORS = (
@@ -20,6 +20,7 @@ FLOORS = (
     ("memory", "parallel", "units"),
     ("expressions",),
     ("ode", "potentials"),
+    ("narrow",),
     ("forces",),
     ("nbody", "rigid", "generalized"),
     ("central",),

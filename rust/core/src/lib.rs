@@ -11,6 +11,7 @@ pub mod expressions;
 pub mod forces;
 pub mod generalized;
 pub mod memory;
+pub mod narrow;
 pub mod nbody;
 pub mod numerics;
 pub mod ode;

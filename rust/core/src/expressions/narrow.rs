@@ -1,7 +1,8 @@
 //! Which expressions may be too narrow for the steps of a method, and hide between the places where it looks.
 //!
 //! The one idea: exp and what is written with it may be nothing at two neighboring places and all that matters in between; what is
-//! algebraic tells of itself from afar if it stands alone, but the two sides of a switch, u/√(u² + ε²), take each other away.
+//! algebraic tells of itself from afar if it stands alone and falls slowly, but 1/(1 + u⁸) is nothing to either side, and the
+//! two sides of a switch, u/√(u² + ε²), take each other away.
 //! Polynomials of low degree, and waves that stand in space, are as long as they are seen to be.
 
 use super::function::Function;
@@ -10,22 +11,84 @@ use super::graph::{Dependence, Graph, Id, Node};
 /// Polynomials of places, velocities and times up to this degree have no narrow crests.
 const STEEPEST: f64 = 4.0;
 
-/// The calls of functions like exp among these expressions, with their arguments, where those change on the way; and those of
-/// sin and cos where the time alone changes them, as drives do: they may be faster than a step, and too weak for its errors.
-pub fn calls(graph: &Graph, roots: &[Id]) -> Vec<(Function, Id, Id)> {
-    let may_be_narrow = |id: Id| {
-        let Node::Call(function, argument) = *graph.node(id) else { return None };
-        let changes = graph.dependence(argument);
-        let may = match function {
-            Function::Exp | Function::Tanh | Function::SechSquared | Function::Sinh | Function::Cosh => {
-                changes > Dependence::Parameters
-            }
-            Function::Sin | Function::Cos => changes == Dependence::Time,
-            _ => false,
+/// What falls with a power of places and times that is lower than this tells of itself from afar.
+const FALLS_SLOWLY: f64 = 4.0;
+
+/// How something narrow depends on its argument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// By a function.
+    Call(Function),
+    /// By a power of its inverse.
+    Divided(f64),
+}
+
+/// Something narrow, and what decides where it is not nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Narrow {
+    /// How it depends on that.
+    pub kind: Kind,
+    /// Its node.
+    pub node: Id,
+    /// Its argument.
+    pub argument: Id,
+}
+
+/// What may be narrow among these expressions: functions like exp where their arguments change on the way; sin and cos where the
+/// time alone changes them, as drives do, which may be faster than a step, and too weak for its errors; and what falls steeply.
+pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
+    let falls = fall(graph);
+    let may_be_narrow = |node: Id| {
+        let (kind, argument) = match *graph.node(node) {
+            Node::Call(function, argument) => (Kind::Call(function), argument),
+            Node::Quotient(_, below) => (Kind::Divided(1.0), below),
+            Node::Power(base, exponent) => (Kind::Divided(-f64::from_bits(exponent)), base),
+            _ => return None,
         };
-        may.then_some((function, id, argument))
+        let changes = graph.dependence(argument);
+        let may = match kind {
+            Kind::Call(
+                Function::Exp | Function::Tanh | Function::SechSquared | Function::Sinh | Function::Cosh,
+            ) => changes > Dependence::Parameters,
+            Kind::Call(Function::Sin | Function::Cos) => changes == Dependence::Time,
+            Kind::Call(_) => false,
+            Kind::Divided(exponent) => {
+                changes > Dependence::Parameters && exponent * falls[argument as usize] >= FALLS_SLOWLY
+            }
+        };
+        may.then_some(Narrow { kind, node, argument })
     };
     graph.reachable(roots).into_iter().filter_map(may_be_narrow).collect()
+}
+
+/// The power of places and times with which every node grows at most, far out.
+fn fall(graph: &Graph) -> Vec<f64> {
+    let mut powers: Vec<f64> = Vec::with_capacity(graph.nodes().len());
+    for (index, node) in graph.nodes().iter().enumerate() {
+        let of = |id: Id| powers[id as usize];
+        let power = match node {
+            _ if graph.dependence(index as Id) <= Dependence::Parameters => 0.0,
+            Node::Constant(_) | Node::Parameter(_) => 0.0,
+            Node::Variable(_) | Node::Time => 1.0,
+            Node::Sum(_, terms) => terms.iter().map(|&(_, id)| of(id)).fold(0.0, f64::max),
+            Node::Product(a, b) => of(*a) + of(*b),
+            Node::Quotient(a, _) => of(*a),
+            Node::Power(base, exponent) => of(*base) * f64::from_bits(*exponent).max(0.0),
+            Node::Call(Function::Sqrt, argument) => 0.5 * of(*argument),
+
+            Node::Call(..) | Node::Angle(..) => 0.0,
+        };
+        powers.push(power);
+    }
+    powers
+}
+
+/// Whether expressions are polynomials up to the third degree: of a step that is nearly straight their ends and slopes there tell
+/// all.
+pub fn is_cubic(graph: &Graph, expressions: &[Id]) -> Vec<bool> {
+    let degrees = degrees(graph, false);
+    let waves = |id: Id| graph.any(&[id], |node| matches!(node, Node::Call(..)));
+    expressions.iter().map(|&id| degrees[id as usize] <= 3.0 && !waves(id)).collect()
 }
 
 /// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree and waves that stand in

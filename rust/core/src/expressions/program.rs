@@ -94,6 +94,12 @@ pub struct LinearSystem {
     pub inner: usize,
 }
 
+/// What rates and the linear equations that they hang on are made of.
+pub fn roots(systems: &[LinearSystem], rates: &[Output]) -> Vec<Id> {
+    let of_systems = systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
+    of_systems.copied().chain(rates.iter().filter_map(Output::node)).collect()
+}
+
 impl LinearSystem {
     /// The lower triangle, row by row, and the right side.
     fn nodes(&self) -> impl Iterator<Item = Id> {

@@ -48,7 +48,7 @@ use crate::ode::Method;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
-use crate::ode::system::{Form, Needs, System};
+use crate::ode::system::{Form, Needs, System, Taken};
 use crate::ode::transformation::Monitor;
 use crate::parallel::Ticker;
 use gravity::FewBodies;
@@ -107,6 +107,15 @@ pub trait Force<S: Element>: Send {
     fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {
         let _ = (state, a);
         None
+    }
+
+    /// As [`System::seen_until`], of this force.
+    ///
+    /// # Errors
+    /// As that.
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        let _ = step;
+        Ok(None)
     }
 
     /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
@@ -214,6 +223,16 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
     fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {
         let longest = self.forces.iter().filter_map(|force| force.longest_step(state, a));
         longest.reduce(|one, other| one.min(other))
+    }
+
+    fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+        let mut until: Option<S> = None;
+        for force in &mut self.forces {
+            if let Some(seen) = force.seen_until(step)? {
+                until = Some(until.map_or(seen, |until| until.min(seen)));
+            }
+        }
+        Ok(until)
     }
 
     fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {

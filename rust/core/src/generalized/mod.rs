@@ -22,7 +22,6 @@ pub mod linear;
 pub mod linear_motion;
 pub mod model;
 pub mod motion;
-mod narrow;
 pub mod one_freedom;
 pub mod poles;
 pub mod projection;

@@ -1,13 +1,13 @@
 //! A mechanical system in generalized coordinates: where it comes from and what was made of it.
 
-use super::narrow::Features;
 use super::poles::Divisors;
 use super::projection::Projection;
 use super::{hamiltonian, lagrangian, sticking};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
-use crate::expressions::program::{LinearSystem, Output};
+use crate::expressions::program::{LinearSystem, Output, roots};
 use crate::expressions::{Code, Graph, Id, Series};
+use crate::narrow::{Equations, Features};
 use crate::ode::system::{Form, Needs};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -135,7 +135,14 @@ impl Model {
     pub(super) fn set_watched(&mut self) -> Result<()> {
         self.switches = sticking::switches(self)?;
         self.divisors = Divisors::of(self)?;
-        self.narrow = Features::of(self)?.map(Arc::new);
+        self.narrow = Features::of(Equations {
+            graph: &mut self.source.graph,
+            numbers: self.numbers,
+            parameters: self.source.parameters,
+            systems: &self.systems,
+            rates: &self.rates,
+        })?
+        .map(Arc::new);
         Ok(())
     }
 
@@ -194,7 +201,7 @@ impl Model {
     /// # Errors
     /// Functions in it that [leap](Series::leaps).
     pub fn series(&self) -> Result<Arc<Series>> {
-        let roots = self.roots();
+        let roots = roots(&self.systems, &self.rates);
         if let Some(function) = Series::leaps(&self.source.graph, &roots) {
             return Err(Error::invalid(
                 "method",
@@ -208,13 +215,6 @@ impl Model {
         Series::new(&self.source.graph, inputs, &self.systems, &self.rates).map(Arc::new)
     }
 
-    /// What its rates and their linear equations are made of.
-    pub(super) fn roots(&self) -> Vec<Id> {
-        let of_systems =
-            self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
-        of_systems.copied().chain(self.rates.iter().filter_map(Output::node)).collect()
-    }
-
     /// What its equations look at.
     pub fn needs(&self) -> Needs {
         self.needs
@@ -224,7 +224,7 @@ impl Model {
         use crate::expressions::Node;
         let graph = &self.source.graph;
         let n = self.source.coordinates as u32;
-        let roots = self.roots();
+        let roots = roots(&self.systems, &self.rates);
         Needs {
             time: graph.any(&roots, |node| matches!(node, Node::Time)),
             velocity: graph.any(&roots, |node| matches!(node, Node::Variable(index) if *index >= n)),

@@ -2,12 +2,12 @@
 
 use super::ahead_of_forces::{LONGEST_FREE, LongestStep};
 use super::model::Model;
-use super::narrow::Narrow;
 use super::run::{Integrator, Request};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::expressions::machine::Width;
 use crate::expressions::series::{Coefficient, Coefficients, Equations, Expansion};
+use crate::narrow::{Narrow, Stepped};
 use crate::ode::series::Jet;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Needs, System, Taken};
@@ -54,6 +54,7 @@ impl<S: Width + Coefficient + Controlled> Motion<S> {
         let motion = Self::new(model, parameters, t0);
         let series = request.series.as_ref();
         let (start, end) = request.span;
+        let stepped = Stepped { t0: start, tolerance: request.dt.is_none().then_some(request.rtol) };
         Self {
             longest_free: S::splat(LONGEST_FREE * (end - start).abs()),
             flat: matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })),
@@ -61,7 +62,7 @@ impl<S: Width + Coefficient + Controlled> Motion<S> {
             narrow: model
                 .narrow
                 .as_ref()
-                .map(|of| Box::new(Narrow::new(of, model.form, request, parameters))),
+                .map(|of| Box::new(Narrow::new(of, model.form, stepped, parameters))),
             ..motion
         }
     }

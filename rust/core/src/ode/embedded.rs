@@ -24,7 +24,7 @@ use core::cell::OnceCell;
 
 mod attempt;
 mod between;
-use attempt::Attempt;
+use attempt::{Attempt, Back};
 use between::{Between, Weights};
 
 /// How many times its tolerance a step may be off at its end by half of what is there.
@@ -261,6 +261,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         }
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         let end_stage = self.end_stage();
+        self.seen = None;
         self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
         system.settle(&mut self.next);
         if self.end_in_estimate {
@@ -280,7 +281,11 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
                 }
             }
         }
-        Ok(outcome)
+        if !outcome.accepted.any() {
+            return Ok(outcome);
+        }
+        let back = Back { running, state, clock, before, step: (from, h), size2 };
+        self.seen_or_taken_back(outcome, back, system)
     }
 
     fn next(&self) -> &State<S> {

@@ -8,6 +8,7 @@ use crate::expressions::narrow;
 use crate::expressions::program::Output;
 use crate::expressions::series::Series;
 use crate::expressions::table::{self, Parameters, Variables};
+use crate::narrow::{Equations, Features};
 use crate::ode::system::Needs;
 use std::sync::Arc;
 
@@ -62,6 +63,21 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         needs,
         may_hide: narrow::may_hide(&graph, &force),
         is_entire: narrow::is_entire(&graph, &force),
+        narrow: features(graph, &force, parameters.len())?.map(Arc::new),
         made_from: vec![],
+    })
+}
+
+/// What may be too narrow for a step, of the accelerations.
+fn features(mut graph: Graph, force: &[Id], parameters: usize) -> Result<Option<Features>> {
+    let unit = graph.parameter(parameters as u32);
+    let rates: Vec<Output> =
+        force.iter().map(|&component| Output::Node(graph.product(&[component, unit]))).collect();
+    Features::of(Equations {
+        graph: &mut graph,
+        numbers: VARIABLES,
+        parameters: parameters + 1,
+        systems: &[],
+        rates: &rates,
     })
 }

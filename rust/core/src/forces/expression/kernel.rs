@@ -1,5 +1,6 @@
 //! The kernel of an expression: eight bodies at once from the lanes to its coordinates, through its code, and back.
 
+use super::unseen::Unseen;
 use super::{ExpressionForce, Gives, VARIABLES};
 use crate::error::Result;
 use crate::expressions::Machine;
@@ -10,7 +11,7 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
-use crate::ode::system::Needs;
+use crate::ode::system::{Needs, Taken};
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -61,6 +62,7 @@ pub(super) struct Kernel {
     /// One for each block of systems, with their parameters.
     machines: Vec<Machine<Lanes>>,
     needs: Needs,
+    unseen: Option<Unseen>,
 }
 
 impl Kernel {
@@ -70,6 +72,7 @@ impl Kernel {
             way: Way::new(term, context),
             machines: parameters(term, context).into_iter().map(machine).collect(),
             needs: term.expressions.needs,
+            unseen: Unseen::new(term, context),
         }
     }
 }
@@ -103,7 +106,7 @@ fn apply_body<V: Vector8 + Scalar>(
     a: &mut [Lanes],
     first: bool,
 ) {
-    let Kernel { way, machines, needs } = kernel;
+    let Kernel { way, machines, needs, .. } = kernel;
     let rows = way.shape.rows;
     let of_block = rows / machines.len();
     let (q, v, a) = (V::view(phase.q), V::view(phase.v), V::view_mut(a));
@@ -163,5 +166,8 @@ impl Force<Lanes> for Kernel {
     }
     fn adds(&self) -> Adds {
         Adds::Once
+    }
+    fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
+        self.unseen.as_mut().map_or(Ok(None), |unseen| unseen.seen_until(step))
     }
 }

@@ -7,6 +7,7 @@ mod alone;
 mod compiled;
 mod expanded;
 mod kernel;
+mod unseen;
 
 use super::Force;
 use super::bodies::{Of, PreciseBodies};
@@ -16,6 +17,7 @@ use super::series::Series;
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Machine, series};
+use crate::narrow::Features;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
@@ -150,6 +152,8 @@ struct Expressions {
     /// Whether there may be more in them than a step sees, and whether series see all.
     may_hide: bool,
     is_entire: bool,
+    /// What may be too narrow for a step, of accelerations: a further parameter is what they are of the components.
+    narrow: Option<Arc<Features>>,
     /// What they were made from, but for the parameters.
     made_from: Vec<u64>,
 }

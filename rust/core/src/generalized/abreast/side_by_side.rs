@@ -3,8 +3,8 @@
 use crate::Result;
 use crate::generalized::fixed::FixedSteps;
 use crate::generalized::motion::Motion;
-use crate::generalized::narrow::UNSEEN;
 use crate::generalized::run::Request;
+use crate::narrow::UNSEEN;
 use crate::numerics::lanes::Lanes;
 use crate::ode::embedded::EmbeddedStep;
 use crate::ode::state::State;

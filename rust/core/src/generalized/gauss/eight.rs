@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::expressions::Code;
 use crate::expressions::machine::Blocks;
 use crate::generalized::abreast::SideBySide;
-use crate::generalized::narrow::UNSEEN;
+use crate::narrow::UNSEEN;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::norm::Norm;

@@ -47,9 +47,36 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
         if !outcome.accepted.any() {
             return Ok(outcome);
         }
-        let EmbeddedStep { stages, next, nodes, .. } = &*method;
+        let back = Back { running, state, clock, before, step: (from, h), size2 };
+        method.seen_or_taken_back(outcome, back, system)
+    }
+}
+
+/// What a step that was accepted is taken back with.
+pub(super) struct Back<'a, S: Controlled> {
+    pub(super) running: S::Mask,
+    /// The state before it.
+    pub(super) state: &'a State<S>,
+    pub(super) clock: &'a mut Clock<S>,
+    pub(super) before: Clock<S>,
+    /// Where it began, and its length.
+    pub(super) step: (S, S),
+    pub(super) size2: S,
+}
+
+impl<S: Controlled> EmbeddedStep<S> {
+    /// Asks the system what lies unseen in a step that was accepted, and settles it once more, to end before that.
+    #[inline(always)]
+    pub(super) fn seen_or_taken_back(
+        &mut self,
+        outcome: Settled<S>,
+        Back { running, state, clock, before, step: (from, h), size2 }: Back<'_, S>,
+        system: &mut dyn System<S>,
+    ) -> Result<Settled<S>> {
+        let end_stage = self.end_stage();
+        let Self { stages, next, nodes, .. } = &*self;
         let len = stages.len();
-        let part = system.seen_until(&Taken {
+        self.seen = system.seen_until(&Taken {
             asked: outcome.accepted,
             from,
             h,
@@ -59,11 +86,10 @@ impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
             series: false,
             visited: None,
         })?;
-        method.seen = part;
-        let Some(seen) = part else { return Ok(outcome) };
+        let Some(seen) = self.seen else { return Ok(outcome) };
         let unseen = seen.less(S::one());
         *clock = before;
-        let outcome = S::settle(clock, running, S::select(unseen, S::splat(HUGE), size2), &method.rule);
+        let outcome = S::settle(clock, running, S::select(unseen, S::splat(HUGE), size2), &self.rule);
         clock.h = S::select(unseen, h * seen, clock.h);
         Ok(outcome)
     }

@@ -1,12 +1,14 @@
 //! What arguments at the ends of a step tell: that of most steps nothing is to be followed.
 //!
 //! The one idea: a cubic stays within the hull of its four control points, which values and slopes at the ends give; where the
-//! arguments move smoothly between those by less than the reach, so they do between any two places where the method looks.
+//! arguments move smoothly between those by less than the reach, so they do between any two places where the method looks. What
+//! falls as a power of an argument does so where that changes by no large factor.
 
-use super::features::{BELOW, BEYOND, Fades};
+use super::features::{AtEnds, BELOW, BEYOND, Fades};
 use crate::expressions::machine::Width;
 use crate::expressions::{Code, Machine};
 use crate::numerics::element::{Pass, View};
+use crate::numerics::elementary::Exponential;
 use crate::numerics::real::{Mask, Real};
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
@@ -61,7 +63,7 @@ impl<S: Width + Controlled> Ends<S> {
         step: &Taken<'_, S>,
         t0: f64,
         (little, gap): (f64, f64),
-        fades: &[Fades],
+        at_ends: &[AtEnds],
     ) -> Option<S> {
         let (of, time) = (step.ends[0], &self.time);
         let (known, all) = S::pass(Known { of, state: &self.state, times: [&step.from, time], h: &step.h });
@@ -90,19 +92,28 @@ impl<S: Width + Controlled> Ends<S> {
             self.time = S::select(step.asked, end, self.time);
         }
         let (told, all) =
-            S::pass(Little { before: &self.before, after: &self.after, fades, h: &step.h, little, gap });
+            S::pass(Little { before: &self.before, after: &self.after, at_ends, h: &step.h, little, gap });
         (!all).then_some(told)
     }
 
     /// Between what values arguments stay in a lane of the step that was told of, and whether they move little.
-    pub(super) fn hulls(&self, step: &Taken<'_, S>, lane: usize, (little, gap): (f64, f64)) -> Vec<Hull> {
+    pub(super) fn hulls(
+        &self,
+        step: &Taken<'_, S>,
+        lane: usize,
+        (little, gap): (f64, f64),
+        at_ends: &[AtEnds],
+    ) -> Vec<Hull> {
         let (h, arguments) = (step.h.lane(lane), self.before.len() / 2);
         let of = |values: &[S], index: usize| values[index].lane(lane);
         let hull = |index: usize| {
             let ends = [of(&self.before, index), of(&self.after, index)];
             let slopes = [of(&self.before, arguments + index), of(&self.after, arguments + index)];
             let (least, most, fastest) = hull(ends, slopes, h * (1.0 / 3.0));
-            let moves_little = most - least <= little || fastest * gap <= little;
+            let moves_little = match at_ends[index] {
+                AtEnds::Fades(_) => most - least <= little || fastest * gap <= little,
+                AtEnds::Power(power) => grows_little((least, most), fastest * gap, factor(little / power)),
+            };
             Hull { ends, least, most, moves_little }
         };
         (0..arguments).map(hull).collect()
@@ -150,6 +161,19 @@ fn hull<V: Real>([u, v]: [V; 2], [du, dv]: [V; 2], third: V) -> (V, V, V) {
     (least, most, fastest * V::splat(3.0))
 }
 
+/// By what part of itself an argument may change whose logarithm may move by so much.
+fn factor(little: f64) -> f64 {
+    Exponential::exp(little) - 1.0
+}
+
+/// Whether an argument changes by no more than that part of itself, on either side of zero.
+#[inline(always)]
+fn grows_little<V: Real>((least, most): (V, V), between: V, part: V) -> V::Mask {
+    let on_one_side = V::zero().less(least).or(most.less(V::zero()));
+    let smaller = part * least.abs().min(most.abs());
+    on_one_side.and((most - least).less_equal(smaller).or(between.less_equal(smaller)))
+}
+
 /// Where a state is that at the end of the last step.
 struct Known<'a, S> {
     of: &'a [S],
@@ -177,7 +201,7 @@ impl<S: Controlled> Pass<S> for Known<'_, S> {
 struct Little<'a, S> {
     before: &'a [S],
     after: &'a [S],
-    fades: &'a [Fades],
+    at_ends: &'a [AtEnds],
     h: &'a S,
     little: f64,
     gap: f64,
@@ -189,16 +213,21 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
     fn run<V: View<S>>(self) -> (S, bool) {
         let (before, after) = (V::view(self.before), V::view(self.after));
         let third = V::load(*self.h) * V::splat(1.0 / 3.0);
-        let (arguments, little, gap) = (self.fades.len(), V::splat(self.little), V::splat(self.gap));
+        let (arguments, little, gap) = (self.at_ends.len(), V::splat(self.little), V::splat(self.gap));
         let (below, under, beyond) = (V::splat(BELOW), V::splat(-BEYOND), V::splat(BEYOND));
         let mut all = V::zero().less_equal(V::zero());
-        for (index, fades) in self.fades.iter().enumerate() {
+        for (index, at_ends) in self.at_ends.iter().enumerate() {
             let slopes = [before[arguments + index], after[arguments + index]];
             let (least, most, fastest) = hull([before[index], after[index]], slopes, third);
-            let faded = match fades {
-                Fades::Below => most.less(below),
-                Fades::Beyond => most.less(under).or(beyond.less(least)),
-                Fades::Nowhere => most.less(least),
+            let faded = match at_ends {
+                AtEnds::Fades(Fades::Below) => most.less(below),
+                AtEnds::Fades(Fades::Beyond) => most.less(under).or(beyond.less(least)),
+                AtEnds::Fades(Fades::Nowhere) => most.less(least),
+                AtEnds::Power(power) => {
+                    let part = factor(self.little / power);
+                    all = all.and(grows_little((least, most), fastest * gap, V::splat(part)));
+                    continue;
+                }
             };
             let slow = (most - least).less_equal(little).or((fastest * gap).less_equal(little));
             all = all.and(slow.or(faded));

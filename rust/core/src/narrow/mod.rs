@@ -1,7 +1,7 @@
 //! What is too narrow for a step to see: smooth walls, bumps and pulses that lie between the places where a method looks.
 //!
-//! The one idea: what is algebraic tells of itself from afar, and a step control sees it; exp and what is written with it (tanh,
-//! 1/cosh) may be nothing at two neighboring places and all that matters in between. But their arguments are seen everywhere: an
+//! The one idea: what is algebraic and falls slowly tells of itself from afar, and a step control sees it; exp and what is written
+//! with it (tanh, 1/cosh), and 1/(1 + u⁸), may be nothing at two neighboring places and all that matters in between. But their arguments are seen everywhere: an
 //! argument that moves by more than a little between two places is followed on the way ([`search`]), and where the function at
 //! what it goes through changes the rates by what matters, the step is taken again, and ends before that.
 //!
@@ -13,21 +13,20 @@ mod search;
 mod way;
 mod weak;
 
-use super::run::Request;
 use crate::error::{Error, Result};
 use crate::expressions::machine::Width;
 use crate::numerics::real::Mask;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
 use ends::Ends;
-pub(super) use features::Features;
+pub use features::{Equations, Features};
 use search::Search;
 use std::sync::Arc;
 use way::Way;
 use weak::Weak;
 
 /// What ends a run with equal steps.
-pub(super) const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscillation that is narrower than the step, and felt nothing of it; \
+pub const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscillation that is narrower than the step, and felt nothing of it; \
     take a shorter dt, or leave dt out with a method that chooses its steps";
 
 /// The most that an argument may move between two places where a method looks: a bump that is e⁻³ there is felt.
@@ -41,9 +40,18 @@ const UNSEEN_BY_EQUAL: f64 = 1e-3;
 /// The least part of the reach by which arguments at the ends show that nothing is to be followed.
 const SHARE: f64 = 0.5;
 
+/// How a run is stepped.
+#[derive(Clone, Copy, Debug)]
+pub struct Stepped {
+    /// The time at its start.
+    pub t0: f64,
+    /// What may be unseen, as a part of a number; none of equal steps, which are as coarse as they were asked for.
+    pub tolerance: Option<f64>,
+}
+
 /// Features under watch, of one trajectory or of eight.
 #[derive(Debug)]
-pub(super) struct Narrow<S> {
+pub struct Narrow<S> {
     of: Arc<Features>,
     form: Form,
     ends: Ends<S>,
@@ -64,16 +72,15 @@ pub(super) struct Narrow<S> {
 
 impl<S: Width + Controlled> Narrow<S> {
     /// Of a run with these parameters.
-    pub(super) fn new(of: &Arc<Features>, form: Form, request: &Request, parameters: &[S]) -> Self {
-        let equal = request.dt.is_some();
+    pub fn new(of: &Arc<Features>, form: Form, Stepped { t0, tolerance }: Stepped, parameters: &[S]) -> Self {
         let mut narrow = Self {
             of: of.clone(),
             form,
             ends: Ends::new(form, &of.ends, parameters),
             parameters: parameters.to_vec(),
-            t0: request.span.0,
-            tolerance: if equal { UNSEEN_BY_EQUAL } else { request.rtol },
-            equal,
+            t0,
+            tolerance: tolerance.unwrap_or(UNSEEN_BY_EQUAL),
+            equal: tolerance.is_none(),
             weak: None,
             search: None,
             gap: None,
@@ -84,7 +91,7 @@ impl<S: Width + Controlled> Narrow<S> {
     }
 
     /// With other parameters from now on.
-    pub(super) fn set_parameters(&mut self, parameters: &[S]) {
+    pub fn set_parameters(&mut self, parameters: &[S]) {
         self.parameters.copy_from_slice(parameters);
         self.ends.set_parameters(parameters);
         if self.of.steady {
@@ -110,7 +117,7 @@ impl<S: Width + Controlled> Narrow<S> {
     ///
     /// # Errors
     /// [`Error::Convergence`] of one trajectory with equal steps.
-    pub(super) fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
+    pub fn seen_until(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         if !self.of.steady {
             return self.followed(step);
         }
@@ -123,7 +130,7 @@ impl<S: Width + Controlled> Narrow<S> {
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let little = (SHARE * self.reach(step), self.gap(step));
-        let Some(told) = self.ends.tell(step, self.t0, little, &self.of.fades) else { return Ok(None) };
+        let Some(told) = self.ends.tell(step, self.t0, little, &self.of.at_ends) else { return Ok(None) };
         let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
         for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
             let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
@@ -132,7 +139,7 @@ impl<S: Width + Controlled> Narrow<S> {
             if weak.holds(
                 &parameters,
                 (step, lane, self.t0),
-                &self.ends.hulls(step, lane, little),
+                &self.ends.hulls(step, lane, little, &self.of.at_ends),
                 self.tolerance,
             ) {
                 continue;

@@ -7,6 +7,7 @@ use super::Features;
 use super::ends::Hull;
 use crate::expressions::Machine;
 use crate::expressions::function::Function;
+use crate::expressions::narrow::Kind;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::step_control::Controlled;
@@ -45,6 +46,12 @@ impl Weak {
         if !hulls.iter().zip(&self.of.plain).all(far) {
             return false;
         }
+        let functions = self.of.kinds.iter().map(|kind| match kind {
+            Kind::Call(function) => Some(*function),
+            Kind::Divided(_) => None,
+        });
+        // Of a quotient the argument does not tell all.
+        let Some(functions) = functions.collect::<Option<Vec<_>>>() else { return false };
         if self.parameters != parameters {
             let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             self.rates.set_parameters(&wide);
@@ -57,8 +64,8 @@ impl Weak {
             let ends = step.ends.map(|end| end[index].lane(lane));
             *number = Lanes(core::array::from_fn(|place| ends[place / 2 % 2]));
         }
-        let of = self.of.functions.iter().zip(&self.of.owners);
-        for (number, (&function, &owner)) in state[numbers..].iter_mut().zip(of) {
+        let of = functions.into_iter().zip(&self.of.owners);
+        for (number, (function, &owner)) in state[numbers..].iter_mut().zip(of) {
             let hull = &hulls[owner];
             *number = Lanes(core::array::from_fn(|place| {
                 let u = match (hull.moves_little, place % 2) {
