@@ -8,10 +8,11 @@ use super::{ExpressionForce, VARIABLES};
 use crate::error::Result;
 use crate::forces::context::{Arrangement, Context};
 use crate::narrow::{Narrow, Stepped};
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken, Visited};
+use crate::tiered;
 
 /// What may be unseen of an expression, as a part of a velocity.
 const TOLERANCE: f64 = 1e-10;
@@ -58,15 +59,16 @@ impl Unseen {
             if !asked.any() {
                 continue;
             }
-            let [before, after] = step.ends.map(|state| way.of_body(state, row));
-            let rates = step.rates.map(|rates| rates.map(|rates| way.acceleration_of(rates, row)));
+            let mut body = OfBody::default();
+            take_body(way, row, (step.ends, step.rates), &mut body);
+            let OfBody { ends: [before, after], rates: [first, last] } = &body;
             let visited = |lane: usize| way.visited(step, row, lane);
             let own = Taken {
                 asked,
                 from: step.from * time,
                 h: step.h * time,
-                ends: [&before, &after],
-                rates: rates.as_ref().map(|[before, after]| [&before[..], &after[..]]),
+                ends: [before, after],
+                rates: step.rates.is_some().then_some([first, last]),
                 nodes: step.nodes,
                 series: step.series,
                 visited: step.visited.is_some().then_some(&visited),
@@ -83,36 +85,65 @@ impl Unseen {
     }
 }
 
+/// A body at the ends of a step: its place and its velocity, as the expression has them, and its acceleration.
+#[derive(Default)]
+struct OfBody {
+    ends: [[Lanes; VARIABLES]; 2],
+    rates: [[Lanes; PLACE]; 2],
+}
+
+#[inline(always)]
+fn take_body_body<V: Vector8>(
+    way: &Way,
+    row: usize,
+    (ends, rates): ([&[Lanes]; 2], Option<[&[Lanes]; 2]>),
+    body: &mut OfBody,
+) {
+    for (state, into) in ends.into_iter().zip(&mut body.ends) {
+        state_of::<V>(way, row, state, into);
+    }
+    let Some(rates) = rates else { return };
+    let unit = V::splat(way.velocity / way.time);
+    for (rates, into) in rates.into_iter().zip(&mut body.rates) {
+        let mut acceleration = [V::zero(); PLACE];
+        for c in 0..way.shape.components {
+            acceleration[c] = V::load(rates[c * way.shape.rows + row]) * unit;
+        }
+        let acceleration = turned(&way.axes, acceleration, false);
+        for c in 0..PLACE {
+            into[c] = acceleration[c].store();
+        }
+    }
+}
+
+#[inline(always)]
+fn state_of<V: Vector8>(way: &Way, row: usize, state: &[Lanes], into: &mut [Lanes; VARIABLES]) {
+    let (rows, components) = (way.shape.rows, way.shape.components);
+    let (mut place, mut velocity) = ([V::zero(); PLACE], [V::zero(); PLACE]);
+    for c in 0..components {
+        let x = V::load(state[c * rows + row]);
+        place[c] = V::splat(way.place).multiply_add(x, V::splat(-way.origin[c]));
+        velocity[c] = V::splat(way.velocity) * V::load(state[(components + c) * rows + row]);
+    }
+    let (place, velocity) = (turned(&way.axes, place, false), turned(&way.axes, velocity, false));
+    for c in 0..PLACE {
+        (into[c], into[PLACE + c]) = (place[c].store(), velocity[c].store());
+    }
+}
+
+tiered! {
+    fn take_body[][](way: &Way, row: usize, step: ([&[Lanes]; 2], Option<[&[Lanes]; 2]>), body: &mut OfBody) = take_body_body;
+}
+
 impl Way {
-    /// The place and the velocity of the body in a row, as the expression has them.
-    fn of_body(&self, state: &[Lanes], row: usize) -> [Lanes; VARIABLES] {
-        let (rows, components) = (self.shape.rows, self.shape.components);
-        let (mut place, mut velocity) = ([Lanes::zero(); PLACE], [Lanes::zero(); PLACE]);
-        for c in 0..components {
-            let of_place = Lanes::splat(self.place);
-            place[c] = of_place.multiply_add(state[c * rows + row], Lanes::splat(-self.origin[c]));
-            velocity[c] = Lanes::splat(self.velocity) * state[(components + c) * rows + row];
-        }
-        let [place, velocity] = [place, velocity].map(|x| turned(&self.axes, x, false));
-        core::array::from_fn(|index| if index < PLACE { place[index] } else { velocity[index - PLACE] })
-    }
-
-    /// Its acceleration.
-    fn acceleration_of(&self, rates: &[Lanes], row: usize) -> [Lanes; PLACE] {
-        let mut found = [Lanes::zero(); PLACE];
-        let unit = Lanes::splat(self.velocity / self.time);
-        for (c, found) in found.iter_mut().enumerate().take(self.shape.components) {
-            *found = rates[c * self.shape.rows + row] * unit;
-        }
-        turned(&self.axes, found, false)
-    }
-
-    /// Where it came by in a step, if that is known.
+    /// Where a body came by in a step, if that is known.
     fn visited(&self, step: &Taken<'_, Lanes>, row: usize, lane: usize) -> Visited {
         let whole = step.visited.map(|visited| visited(lane)).unwrap_or_default();
         let of_body = |(place, state): (f64, Vec<f64>)| {
             let state: Vec<Lanes> = state.into_iter().map(Lanes::splat).collect();
-            (place, self.of_body(&state, row).iter().map(|number| number.0[lane]).collect())
+            let mut body = OfBody::default();
+            take_body(self, row, ([&state, &state], None), &mut body);
+            (place, body.ends[0].iter().map(|number| number.0[lane]).collect())
         };
         whole.into_iter().map(of_body).collect()
     }
