@@ -6,10 +6,15 @@ need nothing here: the nearest is told of itself.
 
 from __future__ import annotations
 
-__all__ = ["MISSING", "OF_KEYWORDS", "OF_RUNS", "OF_SCENES", "OF_THE_PACKAGE", "SOLID", "SYMBOLS"]
+__all__ = ["MISSING", "OF_KEYWORDS", "OF_RUNS", "OF_SCENES", "OF_TABLES", "SOLID", "SYMBOLS"]
 
 _OUTPUTS = "give output times as t, as np.linspace(t0, t1, n); a method with equal steps takes their length as dt"
 _COPIES = "give states, masses or parameters with a leading axis over the copies, and there are as many"
+_SPRING_APART = "damping is that of a damper beside it: vv.Damper(i=…, j=…, c=…)"
+_TAU = "of a force −γ v give tau = m / γ, the time in which velocities fall by a factor e"
+_QUADRATIC = "give it as coefficient, of the force −coefficient |v| v"
+_CROSS_SECTION = "vv.drag.quadratic(density=…, radius=…, drag_coefficient=…) makes the force of it"
+_BY_ANGLES = "give orientation=vv.rigid.quaternion_from_euler(angles)"
 _BY_SPIN = "give it as angular_velocity, along the body's axes"
 #: What to give of a solid.
 SOLID = "give mass=solid.mass, inertia=solid.tensor of a solid of vv.rigid"
@@ -18,6 +23,16 @@ SOLID = "give mass=solid.mass, inertia=solid.tensor of a solid of vv.rigid"
 OF_KEYWORDS = {
     ("run", "t_eval"): "the output times are t",
     ("run", "t_span"): "give the end, or the output times, as t; the start is the scene's t0",
+    (
+        "run",
+        "accuracy",
+    ): "rtol bounds the error of each step; scene.advise(t, accuracy=…) finds how to keep one of the run",
+    ("Runs.run", "accuracy"): "give rtol, which bounds the error of each step",
+    ("GeneralizedEnsemble.run", "accuracy"): "give rtol, which bounds the error of each step",
+    ("run", "tol"): "give it as rtol, and what is absolute as atol",
+    ("run", "tolerance"): "give it as rtol, and what is absolute as atol",
+    ("run", "precision"): "give it as rtol",
+    ("advise", "rtol"): "give the error that the whole run may have as accuracy",
     ("run", "t_end"): "give the end, or the output times, as t",
     ("run", "tmax"): "give the end, or the output times, as t",
     ("run", "duration"): "give the end, or the output times, as t",
@@ -49,9 +64,74 @@ OF_KEYWORDS = {
     ("RigidBody", "w"): _BY_SPIN,
     ("RigidBody", "spin"): _BY_SPIN,
     ("RigidBody", "quaternion"): "give it as orientation, (x, y, z, w)",
+    ("RigidBody", "I"): "give it as moments, three of them, or as inertia, of shape (3, 3)",
+    ("RigidBody", "tensor"): "give it as inertia",
+    ("RigidBody", "euler_angles"): _BY_ANGLES,
+    ("RigidBody", "angles"): _BY_ANGLES,
+    ("RigidBody", "fixed_point"): "give it as pivot",
     ("RigidBody", "shape"): SOLID,
     ("RigidBody", "radius"): SOLID,
     ("UniformField", "gravity"): "give it as g, a vector, as [0, 0, -9.81]",
+    ("UniformField", "acceleration"): "give it as g",
+    ("UniformField", "field"): "give it as g",
+    ("Gravity", "epsilon"): "give it as softening, a length",
+    ("Gravity", "eps"): "give it as softening, a length",
+    ("Gravity", "constant"): "give it as G",
+    ("Harmonic", "stiffness"): "give it as k",
+    ("Harmonic", "omega"): "give k = m ω²",
+    ("Spring", "stiffness"): "give it as k",
+    ("Spring", "spring_constant"): "give it as k",
+    ("Spring", "damping"): _SPRING_APART,
+    ("Spring", "c"): _SPRING_APART,
+    ("Spring", "rest_length"): "give it as length",
+    ("Spring", "natural_length"): "give it as length",
+    ("Spring", "L0"): "give it as length",
+    ("Spring", "l0"): "give it as length",
+    ("Spring", "bodies"): "give the two ends as i and j",
+    ("Damper", "damping"): "give it as c",
+    ("Damper", "coefficient"): "give it as c",
+    ("Damper", "gamma"): "give it as c",
+    ("Damper", "b"): "give it as c",
+    ("Damper", "k"): "stiffness is that of a spring beside it: vv.Spring(i=…, j=…, k=…)",
+    ("Damper", "stiffness"): "stiffness is that of a spring beside it: vv.Spring(i=…, j=…, k=…)",
+    ("Damper", "bodies"): "give the two ends as i and j",
+    ("AttachedSpring", "k"): "give it as stiffness",
+    ("AttachedSpring", "c"): "give it as damping",
+    ("AttachedSpring", "rest_length"): "give it as length",
+    ("LinearDrag", "gamma"): _TAU,
+    ("LinearDrag", "b"): _TAU,
+    ("LinearDrag", "c"): _TAU,
+    ("LinearDrag", "k"): _TAU,
+    ("LinearDrag", "coefficient"): _TAU,
+    ("LinearDrag", "damping"): _TAU,
+    ("LinearDrag", "rate"): "give tau = 1 / rate, the time in which velocities fall by a factor e",
+    ("QuadraticDrag", "k"): _QUADRATIC,
+    ("QuadraticDrag", "c"): _QUADRATIC,
+    ("QuadraticDrag", "b"): _QUADRATIC,
+    ("QuadraticDrag", "gamma"): _QUADRATIC,
+    ("QuadraticDrag", "Cd"): _CROSS_SECTION,
+    ("QuadraticDrag", "drag_coefficient"): _CROSS_SECTION,
+    ("RotationalDrag", "damping"): "give it as coefficient, of the torque −coefficient ω",
+    ("RotationalDrag", "gamma"): "give it as coefficient, of the torque −coefficient ω",
+    ("RotationalDrag", "c"): "give it as coefficient, of the torque −coefficient ω",
+    ("RotatingFrame", "Omega"): "give it as omega",
+    ("RotatingFrame", "angular_velocity"): "give it as omega",
+    ("DrivenForce", "omega"): "give it as frequency, in radians per time",
+    ("DrivenForce", "F0"): "give it as amplitude, a vector",
+    ("DrivenForce", "force"): "give it as amplitude, a vector",
+    ("UniformElectricField", "field"): "give it as E",
+    ("UniformMagneticField", "field"): "give it as B",
+    ("ExpressionForce", "V"): "give it as potential",
+    ("ExpressionForce", "F"): "give it as force",
+    ("ExpressionForce", "body"): "give it as bodies",
+    ("Lagrangian", "q"): "give it as coordinates",
+    ("Lagrangian", "momentum"): "give it as velocity, or make a vv.Hamiltonian",
+    ("Lagrangian", "damping"): "give Rayleigh's function as dissipation",
+    ("Hamiltonian", "coordinates"): "give it as q",
+    ("Hamiltonian", "momenta"): "give it as p",
+    ("Hamiltonian", "velocity"): "give it as momentum",
+    ("distance", "distance"): "give it as below",
+    ("distance", "radius"): "give it as below",
     ("from_elements", "a"): "give it as semi_major_axis",
     ("from_elements", "e"): "give it as eccentricity",
     ("from_elements", "inc"): "give it as inclination",
@@ -68,6 +148,8 @@ OF_KEYWORDS = {
 #: Symbols of books, and what they are called, where a function takes that.
 SYMBOLS = {
     "b": ("impact_parameter",),
+    "q": ("charge",),
+    "mu": ("reduced_mass",),
     "E": ("energy", "beam_energy"),
     "E0": ("beam_energy", "energy"),
     "theta": ("angle", "cm_angle", "lab_angle"),
@@ -102,18 +184,6 @@ MISSING = {
     ("run", "t"): "as run(t=10.0), or run(t=np.linspace(0.0, 10.0, 101))",
 }
 
-#: Attributes of the package.
-OF_THE_PACKAGE = {
-    "Simulation": "make a visviva.Scene of Particles and forces, and run it: see 'coming from REBOUND'",
-    "integrate": "a scene runs itself: visviva.Scene(…).run(t=…)",
-    "odeint": "it is visviva.solve_ivp(fun, t_span, y0), whose function takes the time first",
-    "MjModel": "make a visviva.Scene of RigidBody and forces: see 'coming from MuJoCo'",
-    "Body": "points are visviva.Particles, several at once; bodies that turn are visviva.RigidBody",
-    "CustomForce": "it is visviva.ExpressionForce(force=…), or potential=… where it has one",
-    "Ensemble": "a scene makes one: visviva.Scene(…).ensemble(…)",
-    "G": "it is visviva.units.SI.G in SI; each system of visviva.units has its own",
-}
-
 #: Attributes of a scene.
 OF_SCENES = {
     "integrate": "a scene runs to a time, and stays what it is: out = scene.run(t=…); out.final is the scene there",
@@ -136,10 +206,18 @@ OF_SCENES = {
     "animate": "a run has pictures: scene.run(t=…).animate(…)",
 }
 
+_BETWEEN = "position and velocity at the times asked for as t: outputs between steps cost little and change no step"
+
 #: Attributes of a run: what it is.
 OF_RUNS = {
     "y": "position and velocity",
-    "sol": "position and velocity at the times asked for; outputs between steps cost little and change no step",
+    "sol": _BETWEEN,
+    "at": _BETWEEN,
+    "interpolate": _BETWEEN,
+    "method": "plan.method",
+    "positions": "position",
+    "velocities": "velocity",
+    "acceleration": "final.acceleration() where it ends",
     "success": "status == vv.Status.OK",
     "message": "status",
     "nfev": "stats.evaluations",
@@ -153,6 +231,10 @@ OF_RUNS = {
     "L": "angular_momentum",
     "p": "momentum",
     "kinetic": "kinetic_energy",
+    "T": "kinetic_energy",
+    "E": "energy",
+    "V": "potential_energy",
+    "U": "potential_energy",
     "potential": "potential_energy",
     "omega": "angular_velocity",
     "quaternion": "orientation, (x, y, z, w)",
@@ -160,8 +242,23 @@ OF_RUNS = {
     "euler_angles": "vv.rigid.euler_angles(out.orientation, …)",
     "df": "to_pandas()",
     "to_csv": "to_pandas().to_csv(path)",
-    "final_state": "final, a scene to go on from",
+    "final_state": "final, to go on from",
+    "y_events": "events.position and events.velocity",
+    "t_events": "events.t, of one event events.of(which).t",
     "distance": "np.linalg.norm(out.position[:, 0] - out.position[:, 1], axis=-1)",
+}
+
+#: Attributes of a table of events.
+OF_TABLES = {
+    "time": "t",
+    "times": "t",
+    "x": "position",
+    "y": "position and velocity",
+    "v": "velocity",
+    "event": "which",
+    "kind": "definitions[which].kind",
+    "body": "definitions, each with the bodies that it looks at",
+    "copy": "member",
 }
 
 

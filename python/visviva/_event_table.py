@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 import numpy as np
 
 from visviva._arrays import whole_number
+from visviva._elsewhere import OF_TABLES
 from visviva._exported import ByColumns, Columns, chosen_columns, labels
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
@@ -44,6 +45,14 @@ class Lines(ByColumns[Name], Shown):
     definitions: tuple[Event, ...]
 
     _row_axes = ("event",)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            advice = f"; it is {OF_TABLES[name]}" if name in OF_TABLES else ""
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}{advice}", name=name, obj=self
+            )
 
     @classmethod
     def _made(cls, found: dict[str, NDArray[Any]], **about: tuple[Any, ...]) -> Self:

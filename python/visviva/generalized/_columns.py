@@ -6,6 +6,7 @@ reactions are computed from them when they are first asked for, all in one call 
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
@@ -47,7 +48,8 @@ class StateColumns:
         if name in self._whose.coordinates:
             return f"; it is out[{name!r}]"
         here = _OF_STATES.get(name, OF_RUNS.get(name, ""))
-        return f"; it is {here}" if hasattr(type(self), here.split("(")[0].split(".")[0]) else ""
+        first = re.match(r"\w+", here)
+        return f"; it is {here}" if first and hasattr(type(self), first[0]) else ""
 
     @property
     @abstractmethod
