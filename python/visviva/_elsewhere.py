@@ -29,7 +29,6 @@ OF_KEYWORDS = {
     ): "rtol bounds the error of each step; scene.advise(t, accuracy=…) finds how to keep one of the run",
     ("Runs.run", "accuracy"): "give rtol, which bounds the error of each step",
     ("GeneralizedEnsemble.run", "accuracy"): "give rtol, which bounds the error of each step",
-    ("run", "tol"): "give it as rtol, and what is absolute as atol",
     ("run", "tolerance"): "give it as rtol, and what is absolute as atol",
     ("run", "precision"): "give it as rtol",
     ("advise", "rtol"): "give the error that the whole run may have as accuracy",

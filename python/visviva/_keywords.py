@@ -275,10 +275,10 @@ def check_call(
         pass
 
 
-def takes(function: Callable[..., Any], places: Iterable[str]) -> bool:
-    """Whether a function can be called with so many; one that does not tell what it takes may be."""
+def takes(function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str] = ()) -> bool:
+    """Whether a function can be called with these; one that does not tell what it takes may be."""
     try:
-        check_call("function", function, places)
+        check_call("function", function, places, keywords)
     except InvalidInput:
         return False
     return True

@@ -137,7 +137,7 @@ ANSWERS: dict[tuple[str, ...], str] = {
         "it is a method of a visviva.Lagrangian or visviva.Hamiltonian: dir() of one lists them"
     ),
     ("Poincare", "PoincareMap", "SurfaceOfSection"): "it is poincare(…) of a visviva.Lagrangian or visviva.Hamiltonian",
-    ("Lyapunov", "LyapunovExponent", "LyapunovExponents", "Chaos", "megno"): (
+    ("Lyapunov", "LyapunovExponent", "LyapunovExponents", "Chaos"): (
         "it is visviva.Scene(…).megno(t=…), and lyapunov_exponents(…) of a visviva.Lagrangian"
     ),
     # Methods.

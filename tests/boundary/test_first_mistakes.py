@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import visviva as vv
-from visviva._elsewhere import OF_KEYWORDS, OF_RUNS, OF_SCENES, OF_THE_PACKAGE
+from visviva._elsewhere import OF_KEYWORDS, OF_RUNS, OF_SCENES
+from visviva._names_elsewhere import ANSWERS, IN_ROOMS
 
 PAIR = vv.Particles([1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]])
 ORBIT = vv.Scene(PAIR, vv.Gravity(G=1.0))
@@ -211,9 +212,14 @@ def test_what_is_told_to_be_called_otherwise_is_so() -> None:
     for name, told in OF_SCENES.items():
         with pytest.raises(AttributeError, match=re.escape(told)):
             getattr(ORBIT, name)
-    for name, told in OF_THE_PACKAGE.items():
-        with pytest.raises(AttributeError, match=re.escape(told)):
-            getattr(vv, name)
+    for names, told in ANSWERS.items():
+        for name in names:
+            with pytest.raises(AttributeError, match=re.escape(told)):
+                getattr(vv, name)
+    for room, answers in IN_ROOMS.items():
+        for name, told in ((name, told) for names, told in answers.items() for name in names):
+            with pytest.raises(AttributeError, match=re.escape(told)):
+                getattr(getattr(vv, room), name)
     of_scenes = {"run": ORBIT.run, "ensemble": ORBIT.ensemble, "Particles": vv.Particles, "RigidBody": vv.RigidBody}
     for (called, keyword), told in OF_KEYWORDS.items():
         if called in of_scenes:
