@@ -1,4 +1,4 @@
-"""What people know by another name from elsewhere, and what it is here.
+"""Keywords that people know by another name from elsewhere, and what they are here.
 
 The one idea: whoever writes such a name means something, which the refusal says. Names that are nearly those of visviva
 need nothing here: the nearest is told of itself.
@@ -6,14 +6,18 @@ need nothing here: the nearest is told of itself.
 
 from __future__ import annotations
 
-__all__ = ["MISSING", "OF_KEYWORDS", "OF_RUNS", "OF_SCENES", "OF_TABLES", "SOLID", "SYMBOLS"]
+__all__ = ["MISSING", "OF_KEYWORDS", "SOLID", "SYMBOLS"]
 
 _OUTPUTS = "give output times as t, as np.linspace(t0, t1, n); a method with equal steps takes their length as dt"
 _COPIES = "give states, masses or parameters with a leading axis over the copies, and there are as many"
+_PARTS = "give forces without a name: vv.Scene(particles, force, another)"
 _SPRING_APART = "damping is that of a damper beside it: vv.Damper(i=…, j=…, c=…)"
 _TAU = "of a force −γ v give tau = m / γ, the time in which velocities fall by a factor e"
 _QUADRATIC = "give it as coefficient, of the force −coefficient |v| v"
 _CROSS_SECTION = "vv.drag.quadratic(density=…, radius=…, drag_coefficient=…) makes the force of it"
+_EDGES = "give the three edges as a, b, c"
+_HOLLOW = "give inner_radius, which is radius for a thin shell"
+_RATIO = "give mass_ratio, m₁ / m₂"
 _BY_ANGLES = "give orientation=vv.rigid.quaternion_from_euler(angles)"
 _BY_SPIN = "give it as angular_velocity, along the body's axes"
 #: What to give of a solid.
@@ -27,6 +31,28 @@ OF_KEYWORDS = {
         "run",
         "accuracy",
     ): "rtol bounds the error of each step; scene.advise(t, accuracy=…) finds how to keep one of the run",
+    ("run", "until"): "give the end as t",
+    ("run", "tf"): "give the end, or the output times, as t",
+    ("run", "T"): "give the end, or the output times, as t",
+    ("run", "t_max"): "give the end, or the output times, as t",
+    ("run", "time"): "give the end, or the output times, as t",
+    ("run", "times"): "the output times are t",
+    ("run", "output"): "the output times are t",
+    ("run", "t0"): "the start is the scene's t0, or the first of two numbers given as t",
+    ("run", "num"): _OUTPUTS,
+    ("run", "n_out"): _OUTPUTS,
+    ("run", "samples"): _OUTPUTS,
+    ("run", "n_jobs"): "give it as threads",
+    ("run", "workers"): "give it as threads",
+    ("run", "parallel"): "threads says how many take part; results do not hang on it",
+    ("run", "verbose"): "progress=True shows how far it is",
+    ("run", "callback"): "functions of (t, position, velocity) whose zeros are looked for go to events; progress takes "
+    "a function of how far it is",
+    ("Runs.run", "y0"): "the initial state is the system's: system.at(position=…, velocity=…)",
+    ("Runs.run", "record"): "leave it out: energies, momenta and reactions are computed when they are asked for",
+    ("Scene", "gravity"): _PARTS,
+    ("Scene", "bodies"): "give them without a name, or as particles: vv.Scene(particles, force, …)",
+    ("Scene", "G"): "gravity is a force: vv.Scene(particles, vv.Gravity(G=…))",
     ("Runs.run", "accuracy"): "give rtol, which bounds the error of each step",
     ("GeneralizedEnsemble.run", "accuracy"): "give rtol, which bounds the error of each step",
     ("run", "tolerance"): "give it as rtol, and what is absolute as atol",
@@ -65,6 +91,66 @@ OF_KEYWORDS = {
     ("RigidBody", "quaternion"): "give it as orientation, (x, y, z, w)",
     ("RigidBody", "I"): "give it as moments, three of them, or as inertia, of shape (3, 3)",
     ("RigidBody", "tensor"): "give it as inertia",
+    ("RigidBody", "I1"): "give moments=[I1, I2, I3]",
+    ("RigidBody", "angular_momentum"): "give angular_velocity, along the body's axes: L / moments",
+    ("RigidBody", "rotation"): "give orientation=vv.rigid.quaternion_from_matrix(matrix)",
+    ("RigidBody", "attitude"): "give it as orientation, (x, y, z, w)",
+    ("RigidBody", "center_of_mass"): "give it as position: where the center of mass is",
+    ("RigidBody", "omega0"): _BY_SPIN,
+    ("RigidBody", "fixed"): "give the point that is held, from the center of mass along the body's axes, as pivot",
+    ("RigidBody", "density"): SOLID,
+    ("AttachedSpring", "end"): "give the other end as to, particle or anchor",
+    ("AttachedSpring", "point2"): "give the other end as to with to_point, as particle, or as anchor",
+    ("HeavyTop", "I1"): "give it as A, about the fixed point",
+    ("HeavyTop", "I3"): "give it as C",
+    ("HeavyTop", "l"): "give it as R",
+    ("box", "width"): _EDGES,
+    ("box", "length"): _EDGES,
+    ("box", "x"): _EDGES,
+    ("box", "size"): _EDGES,
+    ("cylinder", "length"): "give it as height",
+    ("sphere", "shell"): _HOLLOW,
+    ("sphere", "hollow"): _HOLLOW,
+    ("pendulum", "length"): "give it as l",
+    ("pendulum", "mass"): "give it as m",
+    ("pendulum", "theta0"): "give it as position, [θ] in radians",
+    ("pendulum", "angle"): "give it as position, [θ] in radians",
+    ("double_pendulum", "theta1"): "give both angles as position, in radians",
+    ("oscillator", "omega"): "give k = m ω²",
+    ("Lagrangian", "T"): "give L = T − V, as one expression",
+    ("Lagrangian", "V"): "give L = T − V, as one expression",
+    ("Lagrangian", "friction"): "give Rayleigh's function as dissipation",
+    ("Lagrangian", "y0"): "give position and velocity",
+    ("Lagrangian", "Q"): "give it as forces, by coordinate",
+    ("Lagrangian", "m"): "values of symbols are parameters={m: …}",
+    ("deflect", "velocity"): "give energy, that of the relative motion: μ v² / 2",
+    ("deflect", "speed"): "give energy, that of the relative motion: μ v² / 2",
+    ("deflect", "Z1"): "charges are in the potential: vv.potentials.Coulomb(k=…), k = Z₁ Z₂ e² / 4πε₀",
+    ("rutherford_cross_section", "Z1"): "charges are in the potential: vv.potentials.Coulomb(k=…), k = Z₁ Z₂ e² / 4πε₀",
+    ("monte_carlo", "mass_ratio"): "give masses, of the projectile and the target",
+    ("monte_carlo", "rng"): "give a whole number as seed: the same counts for any number of threads",
+    ("lab_angle", "masses"): _RATIO,
+    ("lab_angle", "m1"): _RATIO,
+    ("cross_section", "impact_parameter"): "give the angle: vv.scattering.deflect(potential=…, energy=…, "
+    "impact_parameter=…) has it",
+    ("Coulomb", "q1"): "give the product as k, k < 0 where it attracts",
+    ("Coulomb", "Z1"): "give the product as k, k < 0 where it attracts",
+    ("HardSphere", "diameter"): "give it as radius: the distance of the centers where they touch",
+    ("Yukawa", "kappa"): "give length = 1 / κ",
+    ("Yukawa", "alpha"): "give length = 1 / α",
+    ("Yukawa", "range"): "give it as length",
+    ("Yukawa", "g"): "give it as k",
+    ("Morse", "D"): "give it as depth",
+    ("Morse", "D_e"): "give it as depth",
+    ("Morse", "alpha"): "give it as a",
+    ("Morse", "r0"): "give it as r_e",
+    ("SquareWell", "V0"): "give it as depth",
+    ("SquareWell", "a"): "give it as radius",
+    ("PowerLaw", "exponent"): "give it as n, of k / rⁿ",
+    ("PowerLaw", "power"): "give it as n, of k / rⁿ",
+    ("PowerLaw", "alpha"): "give it as n, of k / rⁿ",
+    ("Ion", "Z"): "give it as atomic_number",
+    ("Ion", "A"): "give it as mass",
     ("RigidBody", "euler_angles"): _BY_ANGLES,
     ("RigidBody", "angles"): _BY_ANGLES,
     ("RigidBody", "fixed_point"): "give it as pivot",
@@ -147,6 +233,11 @@ OF_KEYWORDS = {
 #: Symbols of books, and what they are called, where a function takes that.
 SYMBOLS = {
     "b": ("impact_parameter",),
+    "m": ("mass",),
+    "r": ("radius",),
+    "R": ("radius",),
+    "l": ("length",),
+    "h": ("height",),
     "q": ("charge",),
     "mu": ("reduced_mass",),
     "E": ("energy", "beam_energy"),
@@ -181,83 +272,6 @@ OF_KEYWORDS |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for ke
 MISSING = {
     ("Gravity", "G"): "as Gravity(1.0) in units of your own, or Gravity(vv.units.SI.G)",
     ("run", "t"): "as run(t=10.0), or run(t=np.linspace(0.0, 10.0, 101))",
-}
-
-#: Attributes of a scene.
-OF_SCENES = {
-    "integrate": "a scene runs to a time, and stays what it is: out = scene.run(t=…); out.final is the scene there",
-    "solve": "a scene runs to a time: scene.run(t=…)",
-    "simulate": "a scene runs to a time: scene.run(t=…)",
-    "step": "a scene runs to a time: scene.run(t=…)",
-    "add": "parts do not change: make a new Scene of more particles, and of particles and forces",
-    "move_to_com": "it is center_of_mass_frame()",
-    "orbits": "it is elements(about=…)",
-    "energy": "it is invariants().energy",
-    "angular_momentum": "it is invariants().angular_momentum",
-    "lyapunov_exponents": "the largest is megno(t=…).lyapunov_exponent; a Lagrangian has all",
-    "init_megno": "it is megno(t=…)",
-    "t": "it is t0; run(t=…) takes the end",
-    "dt": "it is an argument of run",
-    "position": "it is particles.position",
-    "velocity": "it is particles.velocity",
-    "mass": "it is particles.mass",
-    "plot": "a run has pictures: scene.run(t=…).plot()",
-    "animate": "a run has pictures: scene.run(t=…).animate(…)",
-}
-
-_BETWEEN = "position and velocity at the times asked for as t: outputs between steps cost little and change no step"
-
-#: Attributes of a run: what it is.
-OF_RUNS = {
-    "y": "position and velocity",
-    "sol": _BETWEEN,
-    "at": _BETWEEN,
-    "interpolate": _BETWEEN,
-    "method": "plan.method",
-    "positions": "position",
-    "velocities": "velocity",
-    "acceleration": "final.acceleration() where it ends",
-    "success": "status == vv.Status.OK",
-    "message": "status",
-    "nfev": "stats.evaluations",
-    "nsteps": "stats.steps",
-    "x": "position",
-    "r": "position",
-    "pos": "position",
-    "v": "velocity",
-    "times": "t",
-    "time": "t",
-    "L": "angular_momentum",
-    "p": "momentum",
-    "kinetic": "kinetic_energy",
-    "T": "kinetic_energy",
-    "E": "energy",
-    "V": "potential_energy",
-    "U": "potential_energy",
-    "potential": "potential_energy",
-    "omega": "angular_velocity",
-    "quaternion": "orientation, (x, y, z, w)",
-    "rotation": "vv.rigid.matrix(out.orientation)",
-    "euler_angles": "vv.rigid.euler_angles(out.orientation, …)",
-    "df": "to_pandas()",
-    "to_csv": "to_pandas().to_csv(path)",
-    "final_state": "final, to go on from",
-    "y_events": "events.position and events.velocity",
-    "t_events": "events.t, of one event events.of(which).t",
-    "distance": "np.linalg.norm(out.position[:, 0] - out.position[:, 1], axis=-1)",
-}
-
-#: Attributes of a table of events.
-OF_TABLES = {
-    "time": "t",
-    "times": "t",
-    "x": "position",
-    "y": "position and velocity",
-    "v": "velocity",
-    "event": "which",
-    "kind": "definitions[which].kind",
-    "body": "definitions, each with the bodies that it looks at",
-    "copy": "member",
 }
 
 

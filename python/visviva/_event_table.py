@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 import numpy as np
 
 from visviva._arrays import whole_number
-from visviva._elsewhere import OF_TABLES
+from visviva._attributes_elsewhere import OF_TABLES, no_attribute
 from visviva._exported import ByColumns, Columns, chosen_columns, labels
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
@@ -47,12 +47,7 @@ class Lines(ByColumns[Name], Shown):
     _row_axes = ("event",)
 
     if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            advice = f"; it is {OF_TABLES[name]}" if name in OF_TABLES else ""
-            raise AttributeError(
-                f"{type(self).__name__!r} object has no attribute {name!r}{advice}", name=name, obj=self
-            )
+        __getattr__ = no_attribute(OF_TABLES)
 
     @classmethod
     def _made(cls, found: dict[str, NDArray[Any]], **about: tuple[Any, ...]) -> Self:

@@ -171,6 +171,9 @@ def _near(room: str, name: str, names: tuple[str, ...]) -> str:
     import visviva
     from visviva._names_elsewhere import ANSWERS, IN_ROOMS, answer, plain
 
+    # Coulomb is a force, too, which nobody looks for among cross sections.
+    if room in ("visviva.scattering", "visviva.orbits") and name in visviva.potentials.__all__:
+        return f"; it is visviva.potentials.{name}"
     told = answer(name, IN_ROOMS.get(room.removeprefix("visviva."), {}))
     if told or any(plain(name) == plain(each) for each in names):
         return f"; {told}" if told else did_you_mean(name, names)

@@ -208,6 +208,97 @@ IN_ROOMS: dict[str, dict[tuple[str, ...], str]] = {
             "grows beyond it"
         ),
     },
+    "systems": {
+        ("kepler", "central", "central_potential"): "it is visviva.systems.central_force(potential=…, m=…)",
+        ("elastic_pendulum", "spring_mass_pendulum"): "it is visviva.systems.spring_pendulum(k=…, l=…, m=…, g=…)",
+        ("pendulum_on_cart", "pendulum_cart", "cartpole"): "it is visviva.systems.cart_pendulum(l=…, m=…, cart=…, g=…)",
+        ("inverted_pendulum", "driven_pendulum", "parametric_pendulum"): (
+            "a pendulum whose pivot is shaken is visviva.systems.kapitza(a=…, Omega=…), or "
+            "visviva.systems.moving_pivot(X=…, Y=…, Omega=…); visviva.systems.pendulum(position=…) may start anywhere"
+        ),
+        ("triple_pendulum", "n_pendulum", "multiple_pendulum"): "it is visviva.systems.chain(n=…, l=…, m=…, g=…)",
+        ("coupled_pendulums", "coupled_pendula", "double_spring", "coupled_springs", "springs"): (
+            "small swings of coupled ones are visviva.systems.coupled_oscillators(n=…, k=…, coupling=…, m=…)"
+        ),
+        ("bead_on_hoop", "rotating_hoop"): "it is visviva.systems.hoop(R=…, Omega=…)",
+        (
+            "bead_on_wire",
+            "bead_on_rod",
+            "bead",
+            "rotating_rod",
+        ): "on a rod that turns it is visviva.systems.rod(Omega=…)",
+        ("heavy_top", "top", "gyroscope"): "it is visviva.rigid.HeavyTop(A=…, C=…, mass=…, g=…, R=…)",
+        ("projectile", "free_particle", "free_fall"): (
+            "a constant force is visviva.systems.constant_force(F=…, m=…); in space it is a Scene with UniformField"
+        ),
+        ("damped_oscillator", "driven_oscillator", "duffing", "van_der_pol", "anharmonic", "toda", "fpu", "fput"): (
+            "there is none: visviva.Lagrangian(L=…, coordinates=…, dissipation=…, forces=…) takes any formula"
+        ),
+    },
+    "orbits": {
+        ("kepler", "kepler_equation", "solve_kepler", "eccentric_anomaly"): (
+            "it is visviva.orbits.eccentric_from_mean(mean=…, eccentricity=…)"
+        ),
+        ("true_anomaly",): "it is visviva.orbits.true_from_eccentric(eccentric=…, eccentricity=…)",
+        ("mean_anomaly",): "it is visviva.orbits.mean_from_eccentric(eccentric=…, eccentricity=…)",
+        ("cartesian", "state_vector", "to_cartesian", "position"): (
+            "it is visviva.orbits.state(mu=…, pericenter=…, eccentricity=…)"
+        ),
+        ("circular_velocity", "circular_speed"): "it is visviva.orbits.circular_orbit(potential=…, radius=…)",
+        ("turning_points", "apsides", "r_min", "r_max"): (
+            "it is visviva.orbits.range_of_motion(potential=…, energy=…, angular_momentum=…)"
+        ),
+        ("vis_viva", "escape_velocity", "hohmann", "hill_radius", "lagrange_points", "lambert", "roche"): (
+            "there is none; visviva.orbits.elements(mu=…, position=…, velocity=…) has what a state tells of its orbit"
+        ),
+    },
+    "rigid": {
+        ("cube", "cuboid", "brick"): "it is visviva.rigid.box(mass=…, a=…, b=…, c=…)",
+        ("ball", "solid_sphere"): "it is visviva.rigid.sphere(mass=…, radius=…)",
+        ("hollow_sphere", "spherical_shell", "ball_shell"): (
+            "it is visviva.rigid.sphere(mass=…, radius=…, inner_radius=…), which is radius for a thin shell"
+        ),
+        ("ring", "hoop"): "it is visviva.rigid.disc(mass=…, radius=…, inner_radius=…)",
+        ("half_sphere",): "it is visviva.rigid.hemisphere(mass=…, radius=…)",
+        ("rectangle",): "it is visviva.rigid.plate(mass=…, a=…, b=…)",
+        ("point_masses",): "it is visviva.rigid.particles(mass=…, position=…)",
+        ("steiner", "huygens_steiner"): "it is visviva.rigid.parallel_axis(tensor=…, mass=…, offset=…)",
+        ("rotation_matrix",): "it is visviva.rigid.matrix(quaternion=…)",
+        ("from_matrix",): "it is visviva.rigid.quaternion_from_matrix(matrix=…)",
+        ("from_euler", "euler_to_quaternion"): "it is visviva.rigid.quaternion_from_euler(angles=…)",
+        ("axis_angle", "quaternion_from_axis_angle", "from_rotvec", "from_axis_angle"): (
+            "it is visviva.rigid.quaternion_from_rotation_vector(rotation_vector=…): angle times unit axis"
+        ),
+        ("multiply", "quaternion_multiply"): "it is visviva.rigid.quaternion_product(a=…, b=…)",
+        ("inverse", "conjugate"): "visviva.rigid.rotate_back(quaternion=…, vector=…) turns the other way",
+        ("free_top", "symmetric_top", "asymmetric_top", "euler_top", "euler_equations"): (
+            "it is visviva.rigid.free_rotation(moments=…, angular_velocity=…, t=…)"
+        ),
+    },
+    "scattering": {
+        ("cm_to_lab", "to_lab", "theta_lab"): "it is visviva.scattering.lab_angle(cm_angle=…, mass_ratio=…)",
+        ("lab_to_cm", "to_cm", "theta_cm"): "it is visviva.scattering.cm_angle(lab_angle=…, mass_ratio=…)",
+        ("stopping_power",): "it is visviva.scattering.nuclear_stopping(potential=…, beam_energy=…, masses=…)",
+        ("energy_loss", "recoil_energy"): "it is visviva.scattering.energy_transfer(cm_angle=…, mass_ratio=…)",
+        ("viscosity_cross_section", "momentum_transfer_cross_section", "transfer_cross_section"): (
+            "it is visviva.scattering.transport_cross_section"
+        ),
+        ("simulate", "random_events"): (
+            "it is visviva.scattering.monte_carlo(potential=…, beam_energy=…, masses=…, b_max=…, n_events=…, seed=…)"
+        ),
+        (
+            "time_delay",
+        ): "a visviva.scattering.deflect(potential=…, energy=…, impact_parameter=…, reduced_mass=…) has it",
+        ("rutherford_formula", "dcs", "sigma"): (
+            "it is visviva.scattering.cross_section(potential=…, energy=…, angle=…), and in closed form "
+            "visviva.scattering.rutherford_cross_section(potential=…, energy=…, angle=…)"
+        ),
+        (
+            "hard_sphere",
+            "coulomb",
+            "potential",
+        ): "potentials are in visviva.potentials, as visviva.potentials.HardSphere",
+    },
     "potentials": {
         ("Gravity", "Kepler", "Newton", "Newtonian", "InverseDistance"): (
             "it is visviva.potentials.Coulomb(k=…), k < 0 where it attracts"

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import visviva as vv
-from visviva._elsewhere import OF_KEYWORDS, OF_RUNS, OF_SCENES
+from visviva._attributes_elsewhere import OF_RUNS, OF_SCENES
+from visviva._elsewhere import OF_KEYWORDS
 from visviva._names_elsewhere import ANSWERS, IN_ROOMS
 
 PAIR = vv.Particles([1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]])

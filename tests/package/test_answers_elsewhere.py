@@ -1,6 +1,8 @@
 """Answers to names of elsewhere name what is there: every attribute, keyword and method in all of them."""
 
+import copy
 import inspect
+import pickle
 import re
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -8,7 +10,7 @@ from typing import Any
 import pytest
 
 import visviva as vv
-from visviva import _elsewhere, _names_elsewhere
+from visviva import _attributes_elsewhere, _elsewhere, _names_elsewhere
 
 ROOMS = [name for name in vv.__all__ if inspect.ismodule(getattr(vv, name))]
 #: By kind, what was asked for and what is told.
@@ -17,8 +19,12 @@ TOLD: list[tuple[str, str]] = [
     *((f"{room}.{names[0]}", told) for room, all_ in _names_elsewhere.IN_ROOMS.items() for names, told in all_.items()),
     *((f"{called}({keyword}=)", told) for (called, keyword), told in _elsewhere.OF_KEYWORDS.items()),
     *((f"{called}({missing}=) missing", told) for (called, missing), told in _elsewhere.MISSING.items()),
-    *((f"scene.{name}", told) for name, told in _elsewhere.OF_SCENES.items()),
-    *((f"run.{name}", told) for name, told in _elsewhere.OF_RUNS.items()),
+    *(
+        (f"{table}.{name}", told)
+        for table in _attributes_elsewhere.__all__
+        if table.startswith("OF_")
+        for name, told in getattr(_attributes_elsewhere, table).items()
+    ),
 ]
 
 
@@ -117,6 +123,11 @@ def test_names_of_physics_are_answered(name: str, there: str) -> None:
         (vv.potentials, "Spring", r"it is visviva\.potentials\.Custom"),
         (vv.potentials, "Coriolis", r"it is visviva\.RotatingFrame"),
         (vv.rigid, "Sphere", "did you mean 'sphere'"),
+        (vv.systems, "elastic_pendulum", r"systems\.spring_pendulum"),
+        (vv.systems, "kepler", r"systems\.central_force"),
+        (vv.orbits, "kepler_equation", "eccentric_from_mean"),
+        (vv.scattering, "Coulomb", r"it is visviva\.potentials\.Coulomb"),
+        (vv.scattering, "cm_to_lab", "lab_angle"),
     ],
 )
 def test_names_of_a_room_are_answered(room: Any, name: str, there: str) -> None:
@@ -136,6 +147,7 @@ def test_apsides_of_the_answers_are_those_that_they_are_named_after() -> None:
 
 RUN = vv.problems.kepler(e=0.5).scene.run(t=1.0, events=[vv.events.apsis(1, 0)])
 SWING = vv.systems.pendulum().run(t=1.0)
+BODY = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 2.0, 0.0])
 
 
 @pytest.mark.parametrize(
@@ -150,6 +162,8 @@ SWING = vv.systems.pendulum().run(t=1.0)
         (SWING, "at", "position and velocity"),
         (SWING, "positions", "position"),
         (SWING, "y", "position and velocity"),
+        (SWING.system, "equations_of_motion", "equations"),
+        (RUN.scene.particles, "masses", "mass"),
         (RUN.events, "time", "t$"),
         (RUN.events, "copy", "member"),
     ],
@@ -159,13 +173,42 @@ def test_attributes_of_results_are_answered(of: Any, name: str, there: str) -> N
         getattr(of, name)
 
 
-def test_what_runs_and_tables_are_told_to_have_they_have() -> None:
-    for told in _elsewhere.OF_RUNS.values():
-        if not told.startswith(("vv.", "np.", "angular_velocity", "orientation")):
-            for name in re.findall(r"^[\w.]+", told):
-                assert hasattr(RUN, name.partition(".")[0])
-    for told in _elsewhere.OF_TABLES.values():
-        assert hasattr(RUN.events, re.match(r"\w+", told)[0])  # type: ignore[index]
+HOLDERS: list[tuple[object, dict[str, str]]] = [
+    (RUN, _attributes_elsewhere.OF_RUNS),
+    (RUN.events, _attributes_elsewhere.OF_TABLES),
+    (RUN.scene.particles, _attributes_elsewhere.OF_PARTICLES),
+    (BODY, _attributes_elsewhere.OF_BODIES),
+    (vv.rigid.box(1.0, 1.0, 2.0, 3.0), _attributes_elsewhere.OF_SOLIDS),
+    (vv.rigid.HeavyTop(A=1.0, C=0.5, mass=1.0, g=9.8, R=0.5), _attributes_elsewhere.OF_TOPS),
+    (
+        vv.scattering.deflect(vv.potentials.Coulomb(1.0), energy=1.0, impact_parameter=1.0),
+        _attributes_elsewhere.OF_DEFLECTIONS,
+    ),
+    (vv.potentials.Yukawa(1.0, 2.0), _attributes_elsewhere.OF_POTENTIALS),
+    (SWING.system, _attributes_elsewhere.OF_SYSTEMS),
+]
+# What is no attribute: an expression, or what is known elsewhere.
+NO_ATTRIBUTE = ("vv.", "np.", "len(", "known of ", "a scene ")
+
+
+@pytest.mark.parametrize(("of", "answers"), HOLDERS, ids=[type(of).__name__ for of, _ in HOLDERS])
+def test_what_is_told_of_an_attribute_is_there_and_the_attribute_is_not(of: object, answers: dict[str, str]) -> None:
+    turning = vv.Scene(BODY).run(t=0.0)
+    known = (RUN, turning, SWING) if of is RUN else (of, vv.systems.henon_heiles()) if of is SWING.system else (of,)
+    for name, told in answers.items():
+        assert not hasattr(of, name)
+        first = re.match(r"\w+", told)
+        assert first
+        assert told.startswith(NO_ATTRIBUTE) or any(first[0] in dir(each) for each in known)
+        if told.startswith(NO_ATTRIBUTE) or hasattr(type(of), first[0]):
+            with pytest.raises(AttributeError, match=rf"has no attribute '{name}'; it is {re.escape(told)}$"):
+                getattr(of, name)
+
+
+def test_objects_that_answer_are_copied_and_pickled() -> None:
+    for of in (RUN.scene.particles, RUN.events, BODY, vv.rigid.sphere(1.0, 1.0), vv.potentials.Yukawa(1.0, 2.0)):
+        assert type(copy.deepcopy(of)) is type(of)
+        assert type(pickle.loads(pickle.dumps(of))) is type(of)
 
 
 @pytest.mark.parametrize(
@@ -178,8 +221,17 @@ def test_what_runs_and_tables_are_told_to_have_they_have() -> None:
         (lambda: vv.UniformMagneticField([0, 0, 1], q=1.0), "q", "give it as charge"),  # type: ignore[call-arg]
         (lambda: RUN.scene.run(1.0, accuracy=1e-6), "accuracy", r"rtol .*advise\(t, accuracy=…\)"),  # type: ignore
         (lambda: SWING.system.run(1.0, accuracy=1e-6), "accuracy", "give rtol"),  # type: ignore[call-arg]
+        (lambda: SWING.system.run(1.0, y0=[1.0]), "y0", "the system's"),  # type: ignore[call-arg]
     ],
 )
 def test_keywords_of_other_forces_are_answered(call: Callable[[], Any], keyword: str, cure: str) -> None:
     with pytest.raises(vv.UnknownKeyword, match=rf"^{keyword}: .*; .*{cure}"):
         call()
+
+
+@pytest.mark.parametrize(
+    ("method", "cure"), [("RK45", "'dormand_prince54'"), ("verlet", "'leapfrog'"), ("Radau", "'gauss16' is implicit")]
+)
+def test_methods_of_others_are_answered_in_generalized_coordinates(method: str, cure: str) -> None:
+    with pytest.raises(vv.InvalidInput, match=rf"^method: {method} is none of visviva.methods\(\); {cure}"):
+        SWING.system.run(t=1.0, method=method)  # type: ignore[arg-type]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._elsewhere import OF_RUNS
+from visviva._attributes_elsewhere import OF_RUNS
 from visviva._exported import Columns, chosen_columns
 
 if TYPE_CHECKING:
@@ -24,7 +24,16 @@ if TYPE_CHECKING:
 
 __all__ = ["StateColumns", "exported"]
 
-_OF_STATES = {"q": "position", "qdot": "velocity", "x": "position", "theta": "position", "H": "energy", "E": "energy"}
+_OF_STATES = {
+    "q": "position",
+    "qdot": "velocity",
+    "x": "position",
+    "theta": "position",
+    "H": "energy",
+    "E": "energy",
+    "multipliers": "reactions, the forces of constraints",
+    "constraint_forces": "reactions",
+}
 _HAVE_SYSTEMS = ("system", "ensemble")
 
 
