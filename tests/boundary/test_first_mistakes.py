@@ -203,6 +203,23 @@ def test_what_the_cures_name_does_what_was_meant() -> None:
     assert len(ORBIT.ensemble(parameters=EARTH)) == 2
 
 
+def test_what_is_no_coordinate_is_told_from_one_and_from_a_column() -> None:
+    system = vv.systems.pendulum()
+    out, copies = system.run(t=1.0), system.ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+    for run in (out, copies):
+        with pytest.raises(vv.InvalidInput, match=r"no coordinate 'energy'; there are \['theta'\]; it is out\.energy$"):
+            run["energy"]
+        with pytest.raises(vv.InvalidInput, match=r"no coordinate 'thta'; .*; did you mean 'theta'\?$"):
+            run["thta"]
+    with pytest.raises(vv.InvalidInput, match=r"no coordinate theta\(t\); .*; give its name, out\['theta'\]$"):
+        out[vv.coordinate("theta")]
+
+
+def test_a_function_in_the_place_of_a_torque_is_told_where_it_goes() -> None:
+    with pytest.raises(vv.InvalidInput, match=r"^torque: expected three numbers, got a function; .*vv\.CompiledTorque"):
+        vv.AppliedTorque(lambda t: [0.0, 0.0, t])  # type: ignore[arg-type]
+
+
 def test_what_is_told_to_be_called_otherwise_is_so() -> None:
     """None of these names is one of visviva's, which would never come to be told."""
     out = ORBIT.run(t=1.0)

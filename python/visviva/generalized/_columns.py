@@ -14,6 +14,8 @@ import numpy as np
 
 from visviva._attributes_elsewhere import OF_RUNS
 from visviva._exported import Columns, chosen_columns
+from visviva._keywords import did_you_mean
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,6 +61,17 @@ class StateColumns:
         here = _OF_STATES.get(name, OF_RUNS.get(name, ""))
         first = re.match(r"\w+", here)
         return f"; it is {here}" if first and hasattr(type(self), first[0]) else ""
+
+    def _no_coordinate(self, name: object) -> InvalidInput:
+        names = self._whose.coordinates
+        label = getattr(getattr(name, "func", None), "__name__", "")
+        if label in names:
+            hint = f"; give its name, out[{label!r}]"
+        elif isinstance(name, str):
+            hint = f"; it is out.{name}" if name in dir(type(self)) else did_you_mean(name, names)
+        else:
+            hint = ""
+        return InvalidInput("name", f"there is no coordinate {name!r}; there are {list(names)}{hint}")
 
     @property
     @abstractmethod
