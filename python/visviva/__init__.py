@@ -309,11 +309,11 @@ def _nearest(name: str) -> str:
         return ""
     from importlib import import_module
 
-    from visviva._elsewhere import OF_THE_PACKAGE
     from visviva._keywords import did_you_mean
+    from visviva._names_elsewhere import ANSWERS, answer
 
-    if name in OF_THE_PACKAGE:
-        return f"; {OF_THE_PACKAGE[name]}"
+    if told := answer(name, ANSWERS):
+        return f"; {told}"
     full = {room: import_module(f"visviva.{room}").__all__ for room in _ROOMS}
     for room, names in full.items():
         if name in names:

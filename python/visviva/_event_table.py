@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 import numpy as np
 
 from visviva._arrays import whole_number
+from visviva._attributes_elsewhere import OF_TABLES, no_attribute
 from visviva._exported import ByColumns, Columns, chosen_columns, labels
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
@@ -44,6 +45,9 @@ class Lines(ByColumns[Name], Shown):
     definitions: tuple[Event, ...]
 
     _row_axes = ("event",)
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_TABLES)
 
     @classmethod
     def _made(cls, found: dict[str, NDArray[Any]], **about: tuple[Any, ...]) -> Self:

@@ -158,13 +158,27 @@ def did_you_mean(word: str, names: Iterable[str]) -> str:
 
 
 def unknown_name(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
-    """The ``__getattr__`` of a room: a name that is not there is refused with the nearest one."""
+    """The ``__getattr__`` of a room: a name that is not there is refused with where it is, or with the nearest one."""
 
     def refused(name: str) -> NoReturn:
-        near = "" if name.startswith("_") else did_you_mean(name, names)
+        near = "" if name.startswith("_") else _near(module, name, tuple(names))
         raise AttributeError(f"module {module!r} has no attribute {name!r}{near}")
 
     return refused
+
+
+def _near(room: str, name: str, names: tuple[str, ...]) -> str:
+    import visviva
+    from visviva._names_elsewhere import ANSWERS, IN_ROOMS, answer, plain
+
+    # Coulomb is a force, too, which nobody looks for among cross sections.
+    if room in ("visviva.scattering", "visviva.orbits") and name in visviva.potentials.__all__:
+        return f"; it is visviva.potentials.{name}"
+    told = answer(name, IN_ROOMS.get(room.removeprefix("visviva."), {}))
+    if told or any(plain(name) == plain(each) for each in names):
+        return f"; {told}" if told else did_you_mean(name, names)
+    told = f"it is visviva.{name}" if name in visviva.__all__ else answer(name, ANSWERS)
+    return f"; {told}" if told else did_you_mean(name, names)
 
 
 def _names(function: Callable[..., object]) -> tuple[str, ...]:
@@ -264,10 +278,10 @@ def check_call(
         pass
 
 
-def takes(function: Callable[..., Any], places: Iterable[str]) -> bool:
-    """Whether a function can be called with so many; one that does not tell what it takes may be."""
+def takes(function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str] = ()) -> bool:
+    """Whether a function can be called with these; one that does not tell what it takes may be."""
     try:
-        check_call("function", function, places)
+        check_call("function", function, places, keywords)
     except InvalidInput:
         return False
     return True

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from visviva import _core, _expression_table
-from visviva._keywords import check_call, known_keywords
+from visviva._keywords import check_call, known_keywords, takes
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
 from visviva.generalized._nodes import Nodes, not_compiled
-from visviva.generalized._source import calls, refuse_other_arguments
+from visviva.generalized._source import calls, placed_arguments, refuse_other_arguments
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ __all__ = ["ExpressionForce", "check_units", "formula_of", "parameter_names"]
 
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
+_STATE = ("position", "velocity", "t")
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -77,7 +78,9 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     -----
     Expressions of SymPy are of the symbols ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz``, ``t``, whatever they assume.
     Functions are called once with ``(position, velocity, t, **parameters)``, with expressions in the place of numbers:
-    arithmetic and NumPy's functions, and no branches. All numbers are in the units of the scene; ``t`` is its own time.
+    arithmetic and NumPy's functions, and no branches. A potential may leave out what it has nothing to do with:
+    ``(position, t, **parameters)``, where the second is called ``t`` or ``time``, and ``(position, **parameters)``.
+    All numbers are in the units of the scene; ``t`` is its own time.
     Far from zero times are numbers that lie apart, 2.4e-7 near 1.7e9, and what changes fast from one to the next is not
     known better (an `AccuracyWarning` says so): count time from the start of the run. Places and velocities are those
     of the scene, too: air about a body that moves is not at rest in them.
@@ -94,7 +97,7 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     A quartic trap beside gravity:
 
     >>> import numpy as np, visviva as vv
-    >>> trap = vv.ExpressionForce(potential=lambda r, v, t, k: k * (r[0] ** 2 + r[1] ** 2) ** 2, parameters={"k": 0.25})
+    >>> trap = vv.ExpressionForce(potential=lambda r, k: k * (r[0] ** 2 + r[1] ** 2) ** 2, parameters={"k": 0.25})
     >>> scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), trap, vv.UniformField([0.0, 0.0, -1.0]))
     >>> out = scene.run(t=2.0, rtol=1e-12)
     >>> print(f"{out.position[-1, 0, 2]:.6f}", bool(np.ptp(out.energy) < 1e-11))
@@ -119,7 +122,7 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
         raise InvalidInput("bodies", "expected those on which it acts, got none of them; leave it out for all")
     argument = named[0]
     components = given[argument]
-    roots = (components,) if argument == "potential" else _components(argument, components, names)
+    roots = (_of_state(components, names),) if argument == "potential" else _components(argument, components, names)
     found = [_node(argument, root, nodes, names) for root in roots]
     table = _expression_table.table(nodes, found, names)
     expressed = ExpressedForce(argument, table, values, *_AXES, bodies=() if bodies is None else bodies)
@@ -128,11 +131,34 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     return expressed
 
 
+def _of_state(potential: Any, names: tuple[str, ...]) -> Any:
+    """Give a potential that takes the place alone, or place and time, as a function of the state."""
+    if not callable(potential) or hasattr(potential, "free_symbols"):
+        return potential
+    function = not_compiled(potential)
+    if takes(function, _STATE, names):
+        return potential
+    placed = [name for name in placed_arguments(function) if name not in names]
+    if placed[1:2] in (["t"], ["time"]) and takes(function, _STATE[::2], names):
+        step = 2
+    elif takes(function, _STATE[:1], names):
+        step = len(_STATE)
+    else:
+        return potential
+
+    def of_state(*state: Any, **own: Any) -> Any:
+        return function(*state[::step], **own)
+
+    # What errors in it are told to come from.
+    of_state.__qualname__ = getattr(function, "__qualname__", type(function).__qualname__)
+    return of_state
+
+
 def _components(argument: str, given: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
     """Give three expressions: those of a sequence, or functions that give one component each."""
     if callable(given):
         refuse_other_arguments(argument, given, "velocity", names)
-        check_call(argument, given, ("position", "velocity", "t"), names)
+        check_call(argument, given, _STATE, names)
         return tuple(_one_of(argument, not_compiled(given), c) for c in range(3))
     if isinstance(given, str) or not hasattr(given, "__len__") or len(given) != 3:
         raise InvalidInput(argument, f"expected three components, or a function that gives them, got {given!r}")

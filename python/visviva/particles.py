@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, in_range, mass_array, positive, radius_array, read_only
+from visviva._attributes_elsewhere import OF_PARTICLES, no_attribute
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import JOINING, known_keywords
 from visviva._names import body_index, body_indices, checked_names
@@ -80,6 +81,9 @@ class Particles(Shown):
     velocity: NDArray[np.float64]
     names: tuple[str, ...]
     radius: NDArray[np.float64]
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_PARTICLES)
 
     def __init__(
         self,

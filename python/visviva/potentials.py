@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._attributes_elsewhere import OF_POTENTIALS, no_attribute
 from visviva._custom_potential import Custom, formula_of
 from visviva._declared import Declared, class_from_entry
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass, unknown_name
@@ -58,6 +59,9 @@ class Potential(Declared):
         "up; elsewhere write the sum as one formula, Custom(lambda r, k: …, parameters={'k': 1.0}), or sample it in a "
         "range, Custom(lambda r: a.value(r) + b.value(r), r_min=0.1, r_max=10.0)"
     )
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_POTENTIALS)
 
     def __init__(self) -> None:
         """Refuse: kinds of it have a formula."""

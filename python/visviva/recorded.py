@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._attributes_elsewhere import OF_RUNS
 from visviva._column_axes import COLUMN_AXES
-from visviva._elsewhere import OF_RUNS
 from visviva._exported import Columns, Exported, chosen_columns, labels
 from visviva._html import Sheet, Shown
 from visviva._keywords import frozen, known_keywords

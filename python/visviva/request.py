@@ -95,9 +95,15 @@ def _method(name: str, value: object) -> str:
 
         if isinstance(value, Method):
             return value.name
-    elif (cure := _OF_OTHERS.get(value.lower().replace("-", "_").replace(" ", "_"))) is not None:
-        raise InvalidInput(name, f"{value} is none of visviva.methods(); {cure}")
+    else:
+        refuse_of_others(name, value)
     return _word(name, value)
+
+
+def refuse_of_others(name: str, value: str, *, stiff: str = _STIFF) -> None:
+    """Refuse a method of another package with what does here what it is for; `stiff` of implicit ones."""
+    if (cure := _OF_OTHERS.get(value.lower().replace("-", "_").replace(" ", "_"))) is not None:
+        raise InvalidInput(name, f"{value} is none of visviva.methods(); {stiff if cure is _STIFF else cure}")
 
 
 def _word(name: str, value: object) -> str:

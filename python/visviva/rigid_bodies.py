@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, mass_array, read_only
+from visviva._attributes_elsewhere import OF_BODIES, no_attribute
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
@@ -128,6 +129,9 @@ class RigidBodies(FramedBodies, Shown):
     axes: NDArray[np.float64] = field(init=False)
     center: NDArray[np.float64] = field(init=False)
     pivoted: NDArray[np.bool_] = field(init=False)
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_BODIES)
 
     def __init__(
         self,

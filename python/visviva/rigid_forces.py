@@ -63,6 +63,12 @@ class AppliedTorque(BodyForce):
     def __init__(
         self, torque: ArrayLike, body: int | str | None = None, frame: Literal["space", "body"] = "space"
     ) -> None:
+        if callable(torque):
+            raise InvalidInput(
+                "torque",
+                "expected three numbers, got a function; one of the time and the state that is compiled is "
+                "vv.CompiledTorque(function)",
+            )
         set_frozen(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
         if not isinstance(frame, str) or frame not in ("space", "body"):
             hint = did_you_mean(str(frame), ("space", "body"))

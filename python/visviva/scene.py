@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from visviva._arrays import number
+from visviva._attributes_elsewhere import OF_SCENES
 from visviva._body_force import BodyForce
 from visviva._continuation import with_continuation
-from visviva._elsewhere import OF_SCENES
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import known_keywords

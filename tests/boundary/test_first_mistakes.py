@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import visviva as vv
-from visviva._elsewhere import OF_KEYWORDS, OF_RUNS, OF_SCENES, OF_THE_PACKAGE
+from visviva._attributes_elsewhere import OF_RUNS, OF_SCENES
+from visviva._elsewhere import OF_KEYWORDS
+from visviva._names_elsewhere import ANSWERS, IN_ROOMS
 
 PAIR = vv.Particles([1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]])
 ORBIT = vv.Scene(PAIR, vv.Gravity(G=1.0))
@@ -201,6 +203,23 @@ def test_what_the_cures_name_does_what_was_meant() -> None:
     assert len(ORBIT.ensemble(parameters=EARTH)) == 2
 
 
+def test_what_is_no_coordinate_is_told_from_one_and_from_a_column() -> None:
+    system = vv.systems.pendulum()
+    out, copies = system.run(t=1.0), system.ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+    for run in (out, copies):
+        with pytest.raises(vv.InvalidInput, match=r"no coordinate 'energy'; there are \['theta'\]; it is out\.energy$"):
+            run["energy"]
+        with pytest.raises(vv.InvalidInput, match=r"no coordinate 'thta'; .*; did you mean 'theta'\?$"):
+            run["thta"]
+    with pytest.raises(vv.InvalidInput, match=r"no coordinate theta\(t\); .*; give its name, out\['theta'\]$"):
+        out[vv.coordinate("theta")]
+
+
+def test_a_function_in_the_place_of_a_torque_is_told_where_it_goes() -> None:
+    with pytest.raises(vv.InvalidInput, match=r"^torque: expected three numbers, got a function; .*vv\.CompiledTorque"):
+        vv.AppliedTorque(lambda t: [0.0, 0.0, t])  # type: ignore[arg-type]
+
+
 def test_what_is_told_to_be_called_otherwise_is_so() -> None:
     """None of these names is one of visviva's, which would never come to be told."""
     out = ORBIT.run(t=1.0)
@@ -211,9 +230,14 @@ def test_what_is_told_to_be_called_otherwise_is_so() -> None:
     for name, told in OF_SCENES.items():
         with pytest.raises(AttributeError, match=re.escape(told)):
             getattr(ORBIT, name)
-    for name, told in OF_THE_PACKAGE.items():
-        with pytest.raises(AttributeError, match=re.escape(told)):
-            getattr(vv, name)
+    for names, told in ANSWERS.items():
+        for name in names:
+            with pytest.raises(AttributeError, match=re.escape(told)):
+                getattr(vv, name)
+    for room, answers in IN_ROOMS.items():
+        for name, told in ((name, told) for names, told in answers.items() for name in names):
+            with pytest.raises(AttributeError, match=re.escape(told)):
+                getattr(getattr(vv, room), name)
     of_scenes = {"run": ORBIT.run, "ensemble": ORBIT.ensemble, "Particles": vv.Particles, "RigidBody": vv.RigidBody}
     for (called, keyword), told in OF_KEYWORDS.items():
         if called in of_scenes:

@@ -6,13 +6,16 @@ reactions are computed from them when they are first asked for, all in one call 
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._elsewhere import OF_RUNS
+from visviva._attributes_elsewhere import OF_RUNS
 from visviva._exported import Columns, chosen_columns
+from visviva._keywords import did_you_mean
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +26,16 @@ if TYPE_CHECKING:
 
 __all__ = ["StateColumns", "exported"]
 
-_OF_STATES = {"q": "position", "qdot": "velocity", "x": "position", "theta": "position", "H": "energy", "E": "energy"}
+_OF_STATES = {
+    "q": "position",
+    "qdot": "velocity",
+    "x": "position",
+    "theta": "position",
+    "H": "energy",
+    "E": "energy",
+    "multipliers": "reactions, the forces of constraints",
+    "constraint_forces": "reactions",
+}
 _HAVE_SYSTEMS = ("system", "ensemble")
 
 
@@ -47,7 +59,19 @@ class StateColumns:
         if name in self._whose.coordinates:
             return f"; it is out[{name!r}]"
         here = _OF_STATES.get(name, OF_RUNS.get(name, ""))
-        return f"; it is {here}" if hasattr(type(self), here.split("(")[0].split(".")[0]) else ""
+        first = re.match(r"\w+", here)
+        return f"; it is {here}" if first and hasattr(type(self), first[0]) else ""
+
+    def _no_coordinate(self, name: object) -> InvalidInput:
+        names = self._whose.coordinates
+        label = getattr(getattr(name, "func", None), "__name__", "")
+        if label in names:
+            hint = f"; give its name, out[{label!r}]"
+        elif isinstance(name, str):
+            hint = f"; it is out.{name}" if name in dir(type(self)) else did_you_mean(name, names)
+        else:
+            hint = ""
+        return InvalidInput("name", f"there is no coordinate {name!r}; there are {list(names)}{hint}")
 
     @property
     @abstractmethod

@@ -124,7 +124,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
         if isinstance(member, str):
             coordinates = self.ensemble.system.coordinates
             if member not in coordinates:
-                raise InvalidInput("name", f"there is no coordinate {member!r}; there are {list(coordinates)}")
+                raise self._no_coordinate(member)
             return self.position[..., coordinates.index(member)]
         member = member_index(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)

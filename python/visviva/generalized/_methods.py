@@ -112,10 +112,13 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
         _check_discrete(method, system, dt)
         return method
     from visviva.integrators import Method, methods
+    from visviva.request import refuse_of_others
 
     known: dict[str, Method] = {each.name: each for each in methods()}
     if isinstance(method, Method):
         method = method.name
+    if isinstance(method, str) and method not in known:
+        refuse_of_others("method", method, stiff="'gauss16' is implicit")
     if not isinstance(method, str) or method not in known:
         own = ("auto", *GAUSS, LINEAR, *DISCRETE, *CONSTRAINED)
         hint = did_you_mean(method, [*own, *known]) if isinstance(method, str) else ""

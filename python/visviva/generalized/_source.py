@@ -13,7 +13,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
-__all__ = ["Source", "calls", "described", "refuse_other_arguments"]
+__all__ = ["Source", "calls", "described", "placed_arguments", "refuse_other_arguments"]
 
 #: What the second half of a state is.
 _SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
@@ -189,6 +189,19 @@ def _parameter(sp: Any, t: Any, key: Any, function: Any) -> Any:
     return named[0] if named else sp.Symbol(key)
 
 
+def _arguments(function: Callable[..., Any]) -> list[Parameter]:
+    try:
+        return list(signature(function).parameters.values())
+    except (TypeError, ValueError):  # one that does not tell what it takes
+        return []
+
+
+def placed_arguments(function: Callable[..., Any]) -> list[str]:
+    """Give the names of what a function takes by its place; none of one that does not tell."""
+    by_place = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
+    return [each.name for each in _arguments(function) if each.kind in by_place]
+
+
 def refuse_other_arguments(
     argument: str, function: Callable[..., Any], second_name: str, parameters: tuple[str, ...]
 ) -> None:
@@ -199,16 +212,18 @@ def refuse_other_arguments(
     InvalidInput
         By the name of the argument.
     """
-    try:
-        taken = list(signature(function).parameters.values())
-    except (TypeError, ValueError):  # one that does not tell what it takes
-        return
-    placed = [each.name for each in taken if each.kind in (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)]
+    taken, placed = _arguments(function), placed_arguments(function)
     if placed[:1] == ["t"] and "t" not in placed[1:]:
         raise InvalidInput(
             argument,
             f"expected a function f(position, {second_name}, t), in this order, got f({', '.join(placed)}); "
             "functions of (t, ...) are those of visviva.events.function",
+        )
+    if placed[:2] == ["x", "y"]:
+        raise InvalidInput(
+            argument,
+            f"expected a function f(position, {second_name}, t), got f({', '.join(placed)}): x and y are one argument, "
+            f"whose parts are position[0] and position[1]",
         )
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
     needed = [each.name for each in taken if each.default is Parameter.empty and each.kind in named]

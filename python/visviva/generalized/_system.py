@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._attributes_elsewhere import OF_SYSTEMS, no_attribute
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._flow import Flow
@@ -55,6 +57,13 @@ class GeneralizedSystem(Runs, Flow):
     """
 
     __slots__ = ()
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            first = re.match(r"\w+", OF_SYSTEMS.get(name, ""))
+            # What a Lagrangian has a Hamiltonian may not have.
+            no_attribute(OF_SYSTEMS if first and hasattr(type(self), first[0]) else {})(self, name)
 
     def __init__(self) -> None:
         """Refuse: it is made of a Lagrangian or a Hamiltonian."""

@@ -169,7 +169,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         if not isinstance(name, str) or name not in self.system.coordinates:
-            raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
+            raise self._no_coordinate(name)
         return self.position[:, self.system.coordinates.index(name)]
 
     def __iter__(self) -> NoReturn:

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._attributes_elsewhere import OF_TOPS, no_attribute
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -63,6 +64,9 @@ class HeavyTop(Record, Steady):
     mass: float
     g: float
     R: float
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_TOPS)
 
     def __post_init__(self) -> None:
         for name in ("A", "C", "mass", "g", "R"):

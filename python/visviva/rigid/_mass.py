@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._attributes_elsewhere import OF_SOLIDS, no_attribute
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -74,6 +75,9 @@ class MassProperties(Record):
     mass: float
     center: NDArray[np.float64]
     tensor: NDArray[np.float64]
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_SOLIDS)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", positive("mass", self.mass, "mass"))

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._attributes_elsewhere import OF_DEFLECTIONS, no_attribute
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._made_by import NamedCode
@@ -103,6 +104,9 @@ class Deflection(Shown):
     status: NDArray[np.int64]
     potential: Potential
     reduced_mass: float | None = None
+
+    if not TYPE_CHECKING:
+        __getattr__ = no_attribute(OF_DEFLECTIONS)
 
     def __repr__(self) -> str:
         captured = int((self.status == DeflectionStatus.CAPTURED).sum())

@@ -23,6 +23,7 @@ pub use solutions::{Solutions, member};
 pub use turn::TooLong;
 
 pub use turning::{Turning, steps_bodies};
+pub(in crate::scene) use refusals::with_equal_steps;
 pub(in crate::scene) use turning::{are_series_poor, with_method};
 
 use super::Scene;

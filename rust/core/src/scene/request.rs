@@ -3,6 +3,7 @@
 use super::Scene;
 use super::collisions::Collisions;
 use super::events::{self, Event};
+use super::plan::with_equal_steps;
 use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
 use crate::ode::transformation::Transformation;
@@ -228,9 +229,9 @@ impl Request {
     fn check_tolerances(&self, method: &Method, scene: &Scene) -> Result<()> {
         if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
             let advice = if self.rtol > 0.0 && self.rtol < RTOL_MIN {
-                "; a smaller error needs a fixed-step method such as kahan_li8"
+                format!("; a smaller error needs a fixed-step method such as {}", with_equal_steps(scene))
             } else {
-                ""
+                String::new()
             };
             return Err(Error::invalid(
                 "rtol",

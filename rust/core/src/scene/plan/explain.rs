@@ -22,6 +22,13 @@ pub struct Row {
     pub reason: String,
 }
 
+/// A tolerance to be read: without what dividing it has left in the last digits.
+fn tolerance(rtol: f64) -> String {
+    let told = format!("{rtol:.5e}");
+    let (digits, power) = told.split_once('e').unwrap_or((&told, "0"));
+    format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
+
 impl Plan {
     /// The plan, line by line.
     pub fn rows(&self) -> Vec<Row> {
@@ -47,7 +54,8 @@ impl Plan {
             let steps = match (self.dt, self.transformed, self.tolerance) {
                 (_, _, Some(rtol)) => {
                     format!(
-                        "{PARTS} equal parts, each in steps that are halved until it stays the same to {rtol:e}"
+                        "{PARTS} equal parts, each in steps that are halved until it stays the same to {}",
+                        tolerance(rtol)
                     )
                 }
                 (Some(dt), ..) => format!("fixed step {dt}"),
@@ -68,7 +76,7 @@ impl Plan {
                 row("relative tolerance", format!("at most {AS_KNOWN:e}"), why.to_owned());
             } else if let Some(rtol) = self.held_to {
                 let why = "errors of single steps add up over many turns; name the method for steps held to rtol itself";
-                row("relative tolerance", format!("{rtol:e}"), why.to_owned());
+                row("relative tolerance", tolerance(rtol), why.to_owned());
             }
             if let Some((by, _)) = self.transformed {
                 let told = match by {

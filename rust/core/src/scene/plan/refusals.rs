@@ -35,6 +35,18 @@ pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Re
     ))
 }
 
+/// The method with equal steps, of those that take what the scene's forces look at, whose errors are smallest.
+pub(in crate::scene) fn with_equal_steps(scene: &Scene) -> &'static str {
+    let needs = scene.forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+    let bodies = scene.rigid.as_ref();
+    let resisted = bodies.is_some_and(|bodies| bodies.all_loads().any(|load| load.needs_velocity()));
+    match (needs.velocity || resisted, needs.rotation) {
+        (false, false) => "kahan_li8",
+        (false, true) if bodies.is_none() => "boris4",
+        _ => "rk4",
+    }
+}
+
 /// Refuses drives whose angle leaves what the cosine is known of, at the start or at the end of a run.
 ///
 /// # Errors

@@ -1,0 +1,102 @@
+"""Potentials that take the place alone, or place and time: to the bit the force of place, velocity and time."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+STONES = vv.Particles([1.0, 2.0], [[0.25, -0.5, 1.0], [1.5, 0.5, -0.25]], [[0.5, 0.25, -1.0], [0.0, 1.0, 0.5]])
+
+
+def bowl(r: Any, k: Any) -> Any:
+    return k * (r @ r) ** 2 / 4
+
+
+class Bowl:
+    """A potential that is an object, as of a program that holds more in it."""
+
+    def __call__(self, position: Any, time: Any = 1.0, *, k: Any) -> Any:
+        return bowl(position, k) + 0.0 * time
+
+
+def moved(potential: Callable[..., Any], **parameters: float) -> Any:
+    force = vv.ExpressionForce(potential=potential, parameters=parameters or None)
+    return vv.Scene(STONES, force).run(t=np.linspace(0.0, 3.0, 4), record=("position", "energy"))
+
+
+OF_PLACE: dict[str, Callable[..., Any]] = {
+    "place": bowl,
+    "place, time": lambda r, t, k: bowl(r, k),
+    "a name that is given": lambda r, *, k: bowl(r, k),
+    "with what is at hand": lambda r, power=2, *, k: k * (r @ r) ** power / 4,
+    "an object": Bowl(),
+}
+
+
+@pytest.mark.parametrize("potential", OF_PLACE.values(), ids=OF_PLACE)
+def test_a_potential_of_the_place_moves_as_one_of_the_state(potential: Callable[..., Any]) -> None:
+    whole = moved(lambda r, v, t, k: bowl(r, k), k=3.0)
+    found = moved(potential, k=3.0)
+    assert np.array_equal(found.position, whole.position)
+    assert np.array_equal(found.energy, whole.energy)
+    # 1e-12 a step, of some fifty steps; energies are a few units.
+    assert np.ptp(found.energy) < 5e-11
+
+
+@pytest.mark.parametrize("name", ["t", "time"])
+def test_a_potential_of_place_and_time_has_the_time(name: str) -> None:
+    """V = −a t x: the velocity at t is a t²/2, the way a t³/6."""
+    potentials = {"t": lambda r, t, a: -a * t * r[0], "time": lambda r, time, a: -a * time * r[0]}
+    stone = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    out = vv.Scene(stone, vv.ExpressionForce(potential=potentials[name], parameters={"a": 6.0})).run(t=2.0)
+    # A polynomial of the third degree, which a step has but for a few roundings.
+    assert out.position[-1, 0, 0] == pytest.approx(8.0, rel=4e-15, abs=0)
+    assert out.velocity[-1, 0, 0] == pytest.approx(12.0, rel=4e-15, abs=0)
+
+
+def test_defaults_are_no_reason_to_take_a_function_otherwise() -> None:
+    """What can be called with place, velocity and time is: the third is the time, whatever it is called."""
+    stone = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    out = vv.Scene(stone, vv.ExpressionForce(potential=lambda r, v, s=1.0: -6.0 * s * r[0])).run(t=2.0)
+    assert out.position[-1, 0, 0] == pytest.approx(8.0, rel=4e-15, abs=0)
+
+
+def test_copies_have_parameters_of_their_own() -> None:
+    scene = vv.Scene(STONES, vv.ExpressionForce(potential=bowl, parameters={"k": 1.0}))
+    copies = scene.ensemble(parameters={"ExpressionForce": {"k": [1.0, 3.0]}}).run(t=3.0)
+    for copy, k in enumerate((1.0, 3.0)):
+        assert np.array_equal(copies[copy].position[-1], moved(bowl, k=k).position[-1])
+
+
+@pytest.mark.parametrize(
+    ("potential", "message"),
+    [
+        # Which of both the second is nobody can know.
+        (lambda r, v: r[2], r"called with \(position, velocity, t\).*define it as f\(position, velocity, t\)"),
+        (lambda r, v, t, s, u: r[2], "s"),
+        (lambda x, y, z: 9.81 * z, r"x and y are one argument, whose parts are position\[0\] and position\[1\]"),
+    ],
+)
+def test_other_functions_are_refused(potential: Callable[..., Any], message: str) -> None:
+    with pytest.raises(vv.InvalidInput, match=message):
+        vv.ExpressionForce(potential=potential)
+
+
+def test_three_coordinates_are_no_place_velocity_and_time() -> None:
+    """A spring along z, written so, would push with the time in the place of z."""
+    with pytest.raises(vv.InvalidInput, match=r"^force: .*got f\(x, y, z\): x and y are one argument"):
+        vv.ExpressionForce(force=lambda x, y, z: [0.0, 0.0, -9.81 * z])
+    with pytest.raises(vv.InvalidInput, match=r"^L: .*got f\(x, y, t\): x and y are one argument"):
+        vv.Lagrangian(lambda x, y, t: x[0] * y[0], ["x"], position=[1.0])
+
+
+def test_what_fails_in_a_potential_of_the_place_is_told_by_its_name() -> None:
+    def broken(r: Any) -> Any:
+        raise KeyError(r)
+
+    with pytest.raises(KeyError) as raised:
+        vv.ExpressionForce(potential=broken)
+    assert "broken" in raised.value.__notes__[0]
