@@ -68,7 +68,7 @@ fn exponent_of(number: f64) -> i32 {
 }
 
 /// How many flows are kept ready: so many kinds of particles may be in a scene whose copies share them.
-const READY: usize = 8;
+const READY: usize = 16;
 
 /// A matrix by rows, of which the last is nothing: y′ of y.
 type Rates = [DoubleDouble; NUMBERS * NUMBERS];
@@ -84,19 +84,16 @@ struct Ready {
     propagator: Propagator,
 }
 
-impl Ready {
-    fn new(rates: &Rc<Rates>, backwards: bool) -> Self {
-        let mut fastest = 0.0_f64;
-        for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
-            let size =
-                |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
-            fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
-        }
-        let shortest = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
-        let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
-        let propagator = Propagator::new(rates.iter().map(signed).collect(), NUMBERS, shortest);
-        Self { rates: Rc::clone(rates), backwards, propagator }
+/// The matrix of some rates, forwards or backwards in time, and about the shortest of its periods and decays.
+fn matrix_of(rates: &Rates, backwards: bool) -> (Vec<DoubleDouble>, f64) {
+    let mut fastest = 0.0_f64;
+    for row in rates[3 * NUMBERS..6 * NUMBERS].chunks(NUMBERS) {
+        let size = |of: &[DoubleDouble]| of.iter().fold(0.0_f64, |most, rate| most.max(rate.to_f64().abs()));
+        fastest = fastest.max(size(&row[..3]).sqrt()).max(size(&row[3..6]));
     }
+    let shortest = if fastest > 0.0 { 1.0 / fastest } else { 1.0 };
+    let signed = |&rate: &DoubleDouble| if backwards { -rate } else { rate };
+    (rates.iter().map(signed).collect(), shortest)
 }
 
 impl Flows {
@@ -116,8 +113,16 @@ impl Flows {
         match ready.iter().position(is_it) {
             Some(at) => ready[..=at].rotate_right(1),
             None => {
-                ready.truncate(READY - 1);
-                ready.insert(0, Ready::new(rates, backwards));
+                let (matrix, shortest) = matrix_of(rates, backwards);
+                let rates = Rc::clone(rates);
+                if ready.len() < READY {
+                    let propagator = Propagator::new(matrix, NUMBERS, shortest);
+                    ready.push(Ready { rates, backwards, propagator });
+                } else if let Some(oldest) = ready.last_mut() {
+                    oldest.propagator.take(matrix, shortest);
+                    (oldest.rates, oldest.backwards) = (rates, backwards);
+                }
+                ready.rotate_right(1);
             }
         }
         act(&mut ready[0].propagator)

@@ -11,8 +11,9 @@ use super::graph::{Dependence, Graph, Id, Node};
 /// Polynomials of places, velocities and times up to this degree have no narrow crests.
 const STEEPEST: f64 = 4.0;
 
-/// What falls with a power of places and times that is lower than this tells of itself from afar.
-const FALLS_SLOWLY: f64 = 4.0;
+/// What falls with a power of places and times that is lower than this tells of itself from afar; a product of several that fall
+/// as this does not.
+const FALLS_SLOWLY: f64 = 2.0;
 
 /// How something narrow depends on its argument.
 #[derive(Clone, Copy, Debug, PartialEq)]

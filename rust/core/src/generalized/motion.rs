@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::expressions::machine::Width;
 use crate::expressions::series::{Coefficient, Coefficients, Equations, Expansion};
-use crate::narrow::{Narrow, Stepped};
+use crate::narrow::{Narrow, REACH, Stepped};
 use crate::ode::series::Jet;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Needs, System, Taken};
@@ -54,7 +54,8 @@ impl<S: Width + Coefficient + Controlled> Motion<S> {
         let motion = Self::new(model, parameters, t0);
         let series = request.series.as_ref();
         let (start, end) = request.span;
-        let stepped = Stepped { t0: start, tolerance: request.dt.is_none().then_some(request.rtol) };
+        let tolerance = request.dt.is_none().then_some(request.rtol);
+        let stepped = Stepped { t0: start, tolerance, reach: REACH };
         Self {
             longest_free: S::splat(LONGEST_FREE * (end - start).abs()),
             flat: matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })),

@@ -30,7 +30,7 @@ pub const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscilla
     take a shorter dt, or leave dt out with a method that chooses its steps";
 
 /// The most that an argument may move between two places where a method looks: a bump that is e⁻³ there is felt.
-const REACH: f64 = 3.0;
+pub const REACH: f64 = 3.0;
 /// The same of equal steps, which are as coarse as they were asked for.
 const REACH_OF_EQUAL: f64 = 6.0;
 /// The same of a series, which knows e²⁰ times what it begins with by its last coefficients.
@@ -47,6 +47,8 @@ pub struct Stepped {
     pub t0: f64,
     /// What may be unseen, as a part of a number; none of equal steps, which are as coarse as they were asked for.
     pub tolerance: Option<f64>,
+    /// The most that an argument may move between two places where a method looks.
+    pub reach: f64,
 }
 
 /// Features under watch, of one trajectory or of eight.
@@ -62,6 +64,7 @@ pub struct Narrow<S> {
     tolerance: f64,
     /// Whether steps are equal, and cannot be shorter.
     equal: bool,
+    reach: f64,
     weak: Option<Weak>,
     search: Option<Search>,
     /// The longest part of a step between two places where the method looks.
@@ -72,7 +75,12 @@ pub struct Narrow<S> {
 
 impl<S: Width + Controlled> Narrow<S> {
     /// Of a run with these parameters.
-    pub fn new(of: &Arc<Features>, form: Form, Stepped { t0, tolerance }: Stepped, parameters: &[S]) -> Self {
+    pub fn new(
+        of: &Arc<Features>,
+        form: Form,
+        Stepped { t0, tolerance, reach }: Stepped,
+        parameters: &[S],
+    ) -> Self {
         let mut narrow = Self {
             of: of.clone(),
             form,
@@ -81,6 +89,7 @@ impl<S: Width + Controlled> Narrow<S> {
             t0,
             tolerance: tolerance.unwrap_or(UNSEEN_BY_EQUAL),
             equal: tolerance.is_none(),
+            reach,
             weak: None,
             search: None,
             gap: None,
@@ -109,7 +118,7 @@ impl<S: Width + Controlled> Narrow<S> {
         match (self.equal, step.series) {
             (true, _) => REACH_OF_EQUAL,
             (_, true) => REACH_OF_SERIES,
-            _ => REACH,
+            _ => self.reach,
         }
     }
 

@@ -13,7 +13,7 @@ pub mod propagator;
 use super::double_double::{DoubleDouble, two_sum};
 use super::power_of_two::exponent;
 use super::real::Real;
-use columns::Columns;
+use columns::{Columns, Matrices};
 
 /// Of the time in which nothing turns by more than half a radian, the unit is such a part: each halving is one more power for
 /// each time, and about one term less of the series.
@@ -38,25 +38,35 @@ pub struct MatrixExponential {
     /// 8 u, a power of two.
     unit_of_time: f64,
     /// exp(A u 2ᵏ).
-    powers: Vec<Columns>,
+    powers: Matrices,
     /// 1/k of the terms.
     inverses: Vec<DoubleDouble>,
 }
 
 impl MatrixExponential {
     /// Of a matrix of `n` rows, for times up to about `longest`.
-    pub fn new(mut matrix: Vec<DoubleDouble>, n: usize, longest: f64) -> Self {
-        let units = balanced(&mut matrix, n, longest);
+    pub fn new(matrix: Vec<DoubleDouble>, n: usize, longest: f64) -> Self {
+        let inverses = (1..=TERMS).map(|k| DoubleDouble::one() / DoubleDouble::from(k as f64)).collect();
+        let step = Columns::new(n, n);
+        let mut new =
+            Self { n, step, units: vec![], unit_of_time: 1.0, powers: Matrices::default(), inverses };
+        new.take(matrix, longest);
+        new
+    }
+
+    /// Takes another matrix, of as many rows, and keeps the room.
+    fn take(&mut self, mut matrix: Vec<DoubleDouble>, longest: f64) {
+        self.units = balanced(&mut matrix, self.n, longest);
         let mut norm = 0.0;
-        for row in matrix.chunks_exact(n) {
+        for row in matrix.chunks_exact(self.n) {
             let sum = row.iter().fold(0.0, |sum, entry| sum + entry.to_f64().abs());
             norm = if sum > norm { sum } else { norm };
         }
-        let unit_of_time = if norm > 0.0 { power(-1 - ceiling(norm)) } else { power(ceiling(longest)) };
-        let step: Vec<DoubleDouble> =
-            matrix.into_iter().map(|entry| entry.scale(PART * unit_of_time)).collect();
-        let inverses = (1..=TERMS).map(|k| DoubleDouble::one() / DoubleDouble::from(k as f64)).collect();
-        Self { n, step: Columns::of(&step, n), units, unit_of_time, powers: vec![], inverses }
+        self.unit_of_time = if norm > 0.0 { power(-1 - ceiling(norm)) } else { power(ceiling(longest)) };
+        for (index, entry) in matrix.into_iter().enumerate() {
+            self.step.set(index / self.n, index % self.n, entry.scale(PART * self.unit_of_time));
+        }
+        self.powers.used = 0;
     }
 
     /// A time in which nothing turns by more than half a radian or grows by more than its half: a power of two.
@@ -102,14 +112,13 @@ impl MatrixExponential {
     /// exp(A u 2ᵏ).
     fn power(&mut self, k: u32) -> &Columns {
         let Self { n, step, powers, inverses, .. } = self;
-        while powers.len() <= k as usize {
-            let next = match powers.last() {
-                Some(last) => last.times(last),
-                None => step.series(DoubleDouble::one(), &Columns::one(*n), inverses),
-            };
-            powers.push(next);
+        while powers.used <= k as usize {
+            match powers.next(*n) {
+                (next, [.., last]) => last.times_into(last, next),
+                (next, []) => next.copy_from(&step.series(DoubleDouble::one(), &Columns::one(*n), inverses)),
+            }
         }
-        &powers[k as usize]
+        &powers.all[k as usize]
     }
 }
 

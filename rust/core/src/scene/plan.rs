@@ -22,8 +22,8 @@ pub use explain::Row;
 pub use solutions::{Solutions, member};
 pub use turn::TooLong;
 
-pub use turning::{Turning, steps_bodies};
 pub(in crate::scene) use refusals::with_equal_steps;
+pub use turning::{Turning, steps_bodies};
 pub(in crate::scene) use turning::{are_series_poor, with_method};
 
 use super::Scene;

@@ -16,6 +16,9 @@ use crate::tiered;
 
 /// What may be unseen of an expression, as a part of a velocity.
 const TOLERANCE: f64 = 1e-10;
+/// The most that an argument may move between two places where a method looks: what is less than e⁻⁸ there, is no more than some
+/// thousand tolerances where it is greatest, or is felt.
+const REACH: f64 = 8.0;
 /// Components of a place.
 const PLACE: usize = VARIABLES / 2;
 
@@ -32,7 +35,7 @@ impl Unseen {
     pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Option<Self> {
         let features = term.expressions.narrow.as_ref()?;
         let way = Way::new(term, context);
-        let stepped = Stepped { t0: way.t0, tolerance: Some(TOLERANCE) };
+        let stepped = Stepped { t0: way.t0, tolerance: Some(TOLERANCE), reach: REACH };
         let parameters = parameters(term, context);
         let of_block = way.shape.rows / parameters.len();
         let row = |(row, force): (usize, &Lanes)| {

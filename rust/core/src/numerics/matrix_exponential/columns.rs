@@ -50,8 +50,19 @@ impl Columns {
     /// The unit matrix.
     pub(super) fn one(rows: usize) -> Self {
         let mut one = Self::new(rows, rows);
-        (0..rows).for_each(|row| one.set(row, row, DoubleDouble::one()));
+        one.set_one();
         one
+    }
+
+    /// Becomes the unit matrix.
+    pub(super) fn set_one(&mut self) {
+        self.numbers.fill([Lanes::zero(); 2]);
+        (0..self.rows).for_each(|row| self.set(row, row, DoubleDouble::one()));
+    }
+
+    /// Takes a matrix for a column of [such a one](Self::of_matrices).
+    pub(super) fn set_matrix(&mut self, column: usize, matrix: &Self) {
+        self.numbers[column * self.each..][..self.each].copy_from_slice(&matrix.numbers);
     }
 
     /// Matrices as the columns of one, each with its own columns one below the other.
@@ -102,6 +113,25 @@ impl Columns {
         let room = &mut [y.clone(), y.clone()];
         sum_series(self, x, inverses, (&mut sum, room));
         sum
+    }
+}
+
+/// A list of matrices that keeps its room.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Matrices {
+    pub(super) all: Vec<Columns>,
+    pub(super) used: usize,
+}
+
+impl Matrices {
+    /// The next of them, to be written, and those before it.
+    pub(super) fn next(&mut self, n: usize) -> (&mut Columns, &[Columns]) {
+        if self.used == self.all.len() {
+            self.all.push(Columns::new(n, n));
+        }
+        self.used += 1;
+        let (before, rest) = self.all.split_at_mut(self.used - 1);
+        (&mut rest[0], before)
     }
 }
 

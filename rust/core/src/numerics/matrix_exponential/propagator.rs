@@ -5,7 +5,7 @@
 //! grows with time is none of that: of products of large numbers that cancel nothing is left, and a vector goes through the
 //! powers one after another.
 
-use super::columns::Columns;
+use super::columns::{Columns, Matrices};
 use super::{MatrixExponential, TERMS};
 use crate::numerics::double_double::DoubleDouble;
 
@@ -59,38 +59,12 @@ enum Whole {
     Powers(u64),
 }
 
-/// A list of matrices that keeps its room.
-#[derive(Clone, Debug, Default)]
-struct Matrices {
-    all: Vec<Columns>,
-    used: usize,
-}
-
-impl Matrices {
-    /// The next of them, to be written, and those before it.
-    fn next(&mut self, n: usize) -> (&mut Columns, &[Columns]) {
-        if self.used == self.all.len() {
-            self.all.push(Columns::new(n, n));
-        }
-        self.used += 1;
-        let (before, rest) = self.all.split_at_mut(self.used - 1);
-        (&mut rest[0], before)
-    }
-}
-
 impl Propagator {
     /// Of a matrix of `n` rows, whose shortest period or decay is about so long.
     pub fn new(matrix: Vec<DoubleDouble>, n: usize, shortest: f64) -> Self {
-        let flow = MatrixExponential::new(matrix, n, shortest);
-        let mut terms = vec![Columns::one(n)];
-        for inverse in &flow.inverses {
-            let mut next = flow.step.times(&terms[terms.len() - 1]);
-            next.scale(*inverse);
-            terms.push(next);
-        }
-        Self {
-            terms: Columns::of_matrices(&terms),
-            flow,
+        let mut new = Self {
+            terms: Columns::of_matrices(&vec![Columns::one(n); TERMS + 1]),
+            flow: MatrixExponential::new(matrix, n, shortest),
             times: Vec::new(),
             moves: Vec::new(),
             rests: Matrices::default(),
@@ -99,6 +73,33 @@ impl Propagator {
             products: Matrices::default(),
             vectors: core::array::from_fn(|_| Columns::new(n, 1)),
             powers: Columns::new(TERMS + 1, 1),
+        };
+        new.set_terms();
+        new
+    }
+
+    /// Takes another matrix, of as many rows, and keeps the room.
+    pub fn take(&mut self, matrix: Vec<DoubleDouble>, shortest: f64) {
+        self.flow.take(matrix, shortest);
+        self.times.clear();
+        self.moves.clear();
+        self.digits.clear();
+        self.products.used = 0;
+        self.set_terms();
+    }
+
+    /// Finds (A u)ᵏ/k!, of which the zeroth is there.
+    fn set_terms(&mut self) {
+        let Self { flow, terms, rests, .. } = self;
+        rests.used = 0;
+        rests.next(flow.n).0.set_one();
+        for (k, inverse) in flow.inverses.iter().enumerate() {
+            let (next, before) = rests.next(flow.n);
+            if let Some(last) = before.last() {
+                flow.step.times_into(last, next);
+            }
+            next.scale(*inverse);
+            terms.set_matrix(k + 1, next);
         }
     }
 
