@@ -212,6 +212,18 @@ impl Profile {
     pub(super) fn center(&self) -> Center {
         self.center
     }
+    /// The height of a hill at a center that can be passed.
+    pub(super) fn top(&self) -> Option<f64> {
+        match self.center {
+            Center::Open(top) if top > 0.0 => Some(top),
+            _ => None,
+        }
+    }
+    /// By the logarithm of r, how steeply 1 − b²/r² − V/E rises at a distance; all in the caller's units.
+    pub(super) fn steepness(&self, energy: f64, b: f64, r: f64) -> f64 {
+        let (own, root) = (self.take_length(r), b / r);
+        (2.0 * root).mul_add(root, own * self.force(own) / self.take_energy(energy))
+    }
 
     /// The impact parameters, in the caller's units and ascending, with which what comes with an energy turns or passes where
     /// V has features.
