@@ -200,6 +200,14 @@ impl Deflector {
         let profile = self.profile.as_ref().filter(|_| self.closed.is_none())?;
         profile.top().map(|top| 1.0 - top / profile.take_energy(energy))
     }
+    /// Refuses a table that begins beyond where what comes head-on with an energy turns.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `potential`.
+    pub(in crate::scattering) fn check_begins(&self, energy: f64) -> Result<()> {
+        let check = |profile: &Profile| profile.check_start(profile.take_energy(energy), 0.0, [0.0; 2]);
+        self.profile.as_ref().map_or(Ok(()), check)
+    }
     /// How steeply 1 − b²/r² − V/E rises at a turning point, by the logarithm of r: by what part of itself a rounding of V
     /// moves that.
     pub(in crate::scattering) fn steepness(&self, energy: f64, b: f64, turning: f64) -> f64 {
