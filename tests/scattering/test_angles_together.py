@@ -16,9 +16,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(("potential", "energy"), CASES.values(), ids=CASES)
-def test_many_angles_are_each_alone(
-    potential: P.Potential, energy: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_many_angles_are_each_alone(potential: P.Potential, energy: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def found() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         lab = S.cross_section(potential, energy=energy, angle=ANGLES, frame="lab", mass_ratio=0.5)
         return (

@@ -1,5 +1,5 @@
-"""Spreads of energies across which something orbits or is captured, where no table between energies would do: each event
-is found by direct quadrature.
+"""Spreads of energies across which something orbits or is captured, where no table between energies would do: each
+event is found by direct quadrature.
 """
 
 from pathlib import Path

@@ -1,8 +1,8 @@
-"""Energies that just reach the top of a hill at the center, which one can pass: what turns there within impact parameters
-that no octave of the potential's length comes near.
+"""Energies that just reach the top of a hill at the center, which one can pass: what turns there within impact
+parameters that no octave of the potential's length comes near.
 
-References: what is left on the top, E = V(0)(1 + d), is the only energy there, so that all within scales as a power of d,
-and cross sections of what passes by go on through d = 0 as through any energy.
+References: what is left on the top, E = V(0)(1 + d), is the only energy there, so that all within scales as a power of
+d, and cross sections of what passes by go on through d = 0 as through any energy.
 """
 
 import numpy as np
@@ -69,7 +69,7 @@ def test_what_passes_over_the_top_scales_with_what_is_left(hill: P.Potential) ->
 
 @pytest.mark.parametrize("hill", CONES.values(), ids=CONES)
 def test_the_rainbow_of_a_cone_scales_with_what_is_left(hill: P.Potential) -> None:
-    """What the top takes from ψ goes as d/r, what the next term of V does as r: they are equal at r as d^(1/2), b as r^(3/2)."""
+    """What the top takes from ψ goes as d/r, the next term of V as r: they are equal at r as d^(1/2), b as r^(3/2)."""
     far, near = (S.rainbows(hill, energy=1.0 + left)[0].impact_parameter for left in (1e-8, 1e-10))
     # A maximum that is flat, of samples off by 1e-11: it is where they tell to some per cent.
     assert far / near == pytest.approx(100.0**0.75, rel=0.03, abs=0.0)
