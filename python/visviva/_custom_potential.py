@@ -27,7 +27,8 @@ __all__ = ["Custom", "formula_of"]
 
 _NO_SWITCH = (
     "switches, which no formula does; where V goes on without a jump, put the smaller of r and a, "
-    "(r + a - Abs(r - a))/2, or the larger, (r + a + Abs(r - a))/2, in the place of r; blend what jumps by (1 + tanh((r - a)/width))/2"
+    "(r + a - Abs(r - a))/2, or the larger, (r + a + Abs(r - a))/2, in the place of r; "
+    "blend what jumps by (1 + tanh((r - a)/width))/2"
 )
 
 
