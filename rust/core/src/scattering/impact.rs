@@ -6,10 +6,8 @@
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* (3rd ed.), §3.11; Landau & Lifshitz, *Mechanics*, §16–17.
 
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::lanes::Vector8;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::real::Real;
-use crate::tiered;
 use crate::words::number;
 use crate::{Error, Result};
 
@@ -64,25 +62,21 @@ struct Speed {
 }
 
 impl Speed {
-    #[inline(always)]
     fn value(self) -> f64 {
         scale(self.squared.sqrt().to_f64(), self.unit)
     }
 }
 
-#[inline(always)]
 fn scaled(value: DoubleDouble, exponent: i32) -> DoubleDouble {
     let (high, low) = value.parts();
     DoubleDouble::new(scale(high, exponent), scale(low, exponent))
 }
 
-#[inline(always)]
 fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A vector of length 1 and the length, or None for no direction.
-#[inline(always)]
 fn normalized(vector: Vector) -> Option<(Vector, f64)> {
     let unit = exponent(vector.iter().fold(0.0_f64, |most, part| most.max(part.abs())));
     let scaled = vector.map(|part| scale(part, -unit));
@@ -129,10 +123,6 @@ impl Pair {
     /// # Errors
     /// `InvalidInput` naming what gives no direction, a coefficient that is none, or a Q-value below the threshold.
     pub fn collide(&self, rule: Rule, geometry: Geometry) -> Result<Outcome> {
-        collide_tier(self, rule, geometry)
-    }
-    #[inline(always)]
-    fn collided(&self, rule: Rule, geometry: Geometry) -> Result<Outcome> {
         let relative = self.relative();
         let no_direction = |name: &str| Error::invalid(name, "expected a vector with a direction, got zero");
         let (change, energy_loss) = match geometry {
@@ -179,7 +169,6 @@ impl Pair {
     ///
     /// The square in double-double, of a vector whose length is not trusted either: what a Q-value leaves of it at the
     /// threshold is a difference.
-    #[inline(always)]
     fn speed(&self, normal: Option<Vector>) -> (Speed, f64) {
         let velocities = self.velocities.as_flattened();
         let unit = exponent(velocities.iter().fold(0.0_f64, |most, part| most.max(part.abs())));
@@ -194,7 +183,6 @@ impl Pair {
         (Speed { squared: along * along / product(normal, normal), unit }, along.high())
     }
     /// The speed with which they part and the energy that is lost, of the speed with which they meet.
-    #[inline(always)]
     fn parting(&self, rule: Rule, speed: Speed) -> Result<(f64, f64)> {
         let (small, large) = (self.masses[0].min(self.masses[1]), self.masses[0].max(self.masses[1]));
         let (light, heavy) = (exponent(small), exponent(large));
@@ -260,20 +248,6 @@ impl Pair {
         let back = ((distance - miss) * (distance + miss)).sqrt();
         Ok(core::array::from_fn(|c| (across[c] - back * ahead[c]) / distance))
     }
-}
-
-/// Where products have their errors by one instruction.
-#[inline(always)]
-#[expect(
-    clippy::extra_unused_type_parameters,
-    reason = "a tier calls its body by its vectors; double-double numbers are no vectors"
-)]
-fn collide<V: Vector8>(pair: &Pair, rule: Rule, geometry: Geometry) -> Result<Outcome> {
-    pair.collided(rule, geometry)
-}
-
-tiered! {
-    fn collide_tier[][](pair: &Pair, rule: Rule, geometry: Geometry) -> Result<Outcome> = collide;
 }
 
 #[cfg(test)]
