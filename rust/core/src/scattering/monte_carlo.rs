@@ -32,14 +32,13 @@ pub use quantity::Quantity;
 pub use strata::Strata;
 
 use super::histogram::{Lookup, Steps};
-use super::kinematics::HalfAngle;
 use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::{Error, Result};
 use abreast::Abreast;
-use beam::Arrival;
 use core::ops::Range;
 use draws::{CHANNEL, COMPONENT, Draws, PLACE};
+use mixture::count_one;
 
 /// Events drawn at a time: their draws stay in the first-level cache.
 const BATCH: usize = 512;
@@ -381,20 +380,6 @@ fn follow(mixture: &Mixture, tallies: &[Tally], (seed, event): (u64, u64), count
     let Some((_, beam)) = mixture.component(draws.bits(COMPONENT)) else { return };
     let arrival = beam.arrival(draws);
     count_one(tallies, (beam, &arrival, beam.half_angle(&arrival)), counters);
-}
-
-/// Counts an event in each tally.
-fn count_one(
-    tallies: &[Tally],
-    (beam, arrival, half): (&Beam, &Arrival, Option<HalfAngle>),
-    counters: &mut [Vec<Vec<u64>>],
-) {
-    for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
-        let slot = tally.slot_of(beam, arrival, half);
-        if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
-            *counter += 1;
-        }
-    }
 }
 
 #[cfg(test)]

@@ -267,6 +267,20 @@ impl Tally {
     }
 }
 
+/// Counts an event in each tally.
+pub(super) fn count_one(
+    tallies: &[Tally],
+    (beam, arrival, half): (&Beam, &Arrival, Option<HalfAngle>),
+    counters: &mut [Vec<Vec<u64>>],
+) {
+    for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
+        let slot = tally.slot_of(beam, arrival, half);
+        if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
+            *counter += 1;
+        }
+    }
+}
+
 /// A tally of a beam in one of its channels, as a function of the draw.
 struct OfDraw<'a> {
     tally: &'a Tally,
