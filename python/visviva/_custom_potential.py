@@ -25,6 +25,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Custom", "formula_of"]
 
+_NO_SWITCH = (
+    "switches, which no formula does; where V goes on without a jump, put the smaller of r and a, "
+    "(r + a - Abs(r - a))/2, or the larger, (r + a + Abs(r - a))/2, in the place of r; "
+    "blend what jumps by (1 + tanh((r - a)/width))/2"
+)
+
 
 @known_keywords
 def Custom(  # noqa: N802
@@ -123,6 +129,8 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     except InvalidInput as error:
         if isinstance(error, MissingPackage) or error.argument.startswith("parameters"):
             raise
+        if (switch := error.message.find(" switches inside a step")) > 0:
+            raise InvalidInput("function", f"{error.message[:switch]} {_NO_SWITCH}") from error
         cure = "with r_min and r_max any function of arrays is sampled"
         if "is called with" in error.message:
             cure = "what else it takes are parameters="

@@ -248,8 +248,6 @@ def test_files_of_the_first_version_load(tmp_path: Path) -> None:
         ("energy_spread", {"energy_spread": np.nan}),
         ("energy_spread", {"energy_spread": 0.25}),  # six of them reach 0
         ("energy_spread", {"energy_spread": Spread.uniform(1.5)}),
-        ("energy_spread", {"potential": p.PowerLaw(-1.0, 4), "energy_spread": 0.01}),
-        ("energy_spread", {"potential": p.LennardJones(2.0, 1.0), "energy_spread": 0.1}),
         ("divergence", {"divergence": -0.1}),
         ("divergence", {"divergence": 0.3}),
         ("divergence", {"divergence": Spread.uniform(2.0)}),

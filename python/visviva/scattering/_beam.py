@@ -184,7 +184,7 @@ class Beam(Record):
         compared.
     tables : tuple of int
         The hash of the event table of each energy, from which angles are taken; of a spread of energies, of those
-        between which is interpolated; none of a Coulomb target.
+        between which is interpolated; none of a Coulomb target, and of a spread whose angles are found event by event.
     energy_spread, divergence : Spread or None
         Of the energies about each one given, and of the directions about the axis.
     spot : float or None

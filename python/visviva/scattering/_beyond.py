@@ -79,8 +79,8 @@ def beyond(beam: Beam) -> dict[float, float]:
 
     Energies at which it is that of the edge of the disc, as where ψ falls with the impact parameter, are left out.
     """
-    if not beam.tables:
-        return {}
+    if not beam.tables and beam.energy_spread is None:
+        return {}  # of a Coulomb center
     lines = beam.beam_energy.energy if isinstance(beam.beam_energy, Spectrum) else (beam.beam_energy,)
     share = beam.masses[1] / (beam.masses[0] + beam.masses[1])
     found = {}

@@ -118,7 +118,8 @@ def monte_carlo(
         Of the projectiles' energies about `beam_energy`, or about each energy of a `Spectrum`; a number is the standard
         deviation of a Gaussian, which ends at 6 of them. Angles are interpolated between tables of 3 to 17 energies,
         tried against direct quadrature to 4e-6 in sin²(ψ/2); where the deflection is not that smooth in the energy
-        (orbiting, capture) the run is refused.
+        (orbiting, capture) the angle of each event is found by direct quadrature, to 1e-12 of what is added up to it,
+        in some microseconds in place of some ten nanoseconds, and ``result.beam.tables`` is empty.
     divergence : float or Spread, optional
         Of the directions about the axis, in radians: a number is the standard deviation of a Gaussian in each of two
         planes. ``lab_angle`` and ``recoil_angle`` are then measured from the axis; ``cm_angle`` stays that of the

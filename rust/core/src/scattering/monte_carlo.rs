@@ -38,6 +38,7 @@ use crate::{Error, Result};
 use abreast::Abreast;
 use core::ops::Range;
 use draws::{CHANNEL, COMPONENT, Draws, PLACE};
+use mixture::count_one;
 
 /// Events drawn at a time: their draws stay in the first-level cache.
 const BATCH: usize = 512;
@@ -45,6 +46,8 @@ const BATCH: usize = 512;
 const EVENTS_PER_TICK: u64 = 1 << 16;
 /// Events worth handing to another thread.
 const EVENTS_PER_CHUNK: u64 = 1 << 19;
+/// The same of events whose deflections are found one by one.
+const DIRECT_PER_CHUNK: u64 = 1 << 13;
 /// At most so many in a chunk, a fifth of a second: an interrupted run loses what other threads did beyond the
 /// first chunk that is not whole.
 const MOST_PER_CHUNK: u64 = 1 << 25;
@@ -116,10 +119,11 @@ pub fn monte_carlo(
     let mut first = first_event;
     while first < end {
         let events = most_per_round.min(end - first);
-        let chunks = events.div_ceil(EVENTS_PER_CHUNK).min(CHUNKS_PER_THREAD * threads as u64);
+        let per_chunk = if mixture.is_direct() { DIRECT_PER_CHUNK } else { EVENTS_PER_CHUNK };
+        let chunks = events.div_ceil(per_chunk).min(CHUNKS_PER_THREAD * threads as u64);
         let bound = |chunk: usize| first + (u128::from(events) * chunk as u128 / u128::from(chunks)) as u64;
         let parts = for_chunks(threads, chunks as usize, ticker, |chunk, ticker| {
-            Ok(program.count(seed, bound(chunk)..bound(chunk + 1), ticker))
+            program.count(seed, bound(chunk)..bound(chunk + 1), ticker)
         })?;
         for (chunk, (events, counters)) in parts.into_iter().enumerate() {
             program.collect(&counters, &mut counted.counts);
@@ -199,6 +203,8 @@ enum Program<'a> {
     Steps(Stepped),
     /// One by one, or eight side by side where that is faster.
     Drawn(&'a Mixture, &'a [Tally], Option<Abreast<'a>>),
+    /// One by one, with the deflections of a batch together.
+    Direct(&'a Mixture, &'a [Tally]),
 }
 
 /// Events as step functions of their draws.
@@ -249,6 +255,9 @@ impl<'a> Program<'a> {
         let differ = differ(tallies);
         let told = mixture.channels();
         if mixture.is_drawn() || (differ && told.is_none()) {
+            if mixture.is_direct() {
+                return Ok(Self::Direct(mixture, tallies));
+            }
             return Ok(Self::Drawn(mixture, tallies, Abreast::of(mixture, tallies)));
         }
         let (channel, channels) =
@@ -263,22 +272,25 @@ impl<'a> Program<'a> {
             Self::Steps(Stepped { steps, .. }) => {
                 steps.iter().map(|steps| steps.iter().map(Steps::counters).collect()).collect()
             }
-            Self::Drawn(mixture, tallies, _) => {
+            Self::Drawn(mixture, tallies, _) | Self::Direct(mixture, tallies) => {
                 let strata = mixture.histograms();
                 tallies.iter().map(|tally| vec![vec![0; tally.slots() * strata]]).collect()
             }
         }
     }
     /// Counts events in their order until they end or the run is cancelled.
-    fn count(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> (u64, Counters) {
+    ///
+    /// # Errors
+    /// As [`Mixture::met`], but for `Interrupted`.
+    fn count(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> Result<(u64, Counters)> {
         if ticker.tick().is_err() {
-            return (0, Vec::new());
+            return Ok((0, Vec::new()));
         }
+        let most = if matches!(self, Self::Direct(..)) { BATCH as u64 } else { EVENTS_PER_TICK };
         let mut counters = self.counters();
         let mut event = events.start;
         while event < events.end && ticker.tick().is_ok() {
-            let stop = events.end.min(event + EVENTS_PER_TICK);
-            ticker.control().count(stop - event);
+            let stop = events.end.min(event + most);
             match self {
                 Self::Steps(stepped) => stepped.look_up(seed, event..stop, &mut counters),
                 Self::Drawn(mixture, tallies, abreast) => {
@@ -289,10 +301,20 @@ impl<'a> Program<'a> {
                         None => (event..stop).for_each(|event| alone(event, &mut counters)),
                     }
                 }
+                Self::Direct(mixture, tallies) => match mixture.met(seed, event..stop, ticker) {
+                    Ok(met) => {
+                        met.iter().for_each(|met| {
+                            count_one(tallies, (met.beam, &met.arrival, met.half()), &mut counters);
+                        });
+                    }
+                    Err(Error::Interrupted) => break,
+                    Err(error) => return Err(error),
+                },
             }
+            ticker.control().count(stop - event);
             event = stop;
         }
-        (event - events.start, counters)
+        Ok((event - events.start, counters))
     }
     /// Adds what was counted to the slots of each tally.
     fn collect(&self, counters: &Counters, counts: &mut [Vec<u64>]) {
@@ -304,7 +326,7 @@ impl<'a> Program<'a> {
                     }
                 }
             }
-            Self::Drawn(..) => {
+            Self::Drawn(..) | Self::Direct(..) => {
                 for (counters, counts) in counters.iter().zip(counts) {
                     for (counter, count) in counters.iter().flatten().zip(counts) {
                         *count += counter;
@@ -357,13 +379,7 @@ fn follow(mixture: &Mixture, tallies: &[Tally], (seed, event): (u64, u64), count
     let draws = Draws::new(seed, event);
     let Some((_, beam)) = mixture.component(draws.bits(COMPONENT)) else { return };
     let arrival = beam.arrival(draws);
-    let half = beam.half_angle(&arrival);
-    for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
-        let slot = tally.slot_of(beam, &arrival, half);
-        if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
-            *counter += 1;
-        }
-    }
+    count_one(tallies, (beam, &arrival, beam.half_angle(&arrival)), counters);
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::registry::described_potential;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use visviva_core::parallel::thread_count;
+use visviva_core::parallel::{for_chunks, thread_count};
 use visviva_core::scattering::cross_sections::{CollisionIntegrals, OF_ANGLES_IN_MEAN, Structure, transport};
 use visviva_core::scattering::deflection::{Deflector, TOLERANCE};
 use visviva_core::scattering::kinematics::Collision;
@@ -74,13 +74,15 @@ pub(crate) fn scattering_branches<'py>(
 ) -> PyResult<(Vec<usize>, Vec<Column<'py>>)> {
     let potential = described_potential(description)?;
     let (angle, _) = copied("angle", &angle, [None])?;
+    let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let (counts, columns) = compute(py, 0, None, |ticker| {
         let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         let mut counts = Vec::with_capacity(angle.len());
         let mut columns: [Vec<f64>; 4] = Default::default();
-        for angle in &angle {
-            let branches = structure.branches(*angle, ticker)?;
+        let found =
+            for_chunks(threads, angle.len(), ticker, |at, ticker| structure.branches(angle[at], ticker))?;
+        for branches in found {
             counts.push(branches.len());
             for branch in &branches {
                 let numbers =
@@ -112,16 +114,16 @@ pub(crate) fn differential_cross_section<'py>(
 ) -> PyResult<Column<'py>> {
     let potential = described_potential(description)?;
     let (angle, shape) = copied("angle", &angle, [None])?;
+    let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let found = compute(py, 0, None, |ticker| {
         let deflector = Deflector::at_energy(&potential, TOLERANCE, energy)?;
         let structure = Structure::new(&deflector, energy, ticker)?;
         let collision = Collision::new(mass_ratio, 1.0)?;
-        let one = |angle: &f64| match frame {
-            "lab" => structure.lab_cross_section(collision, *angle, ticker),
-            "recoil" => structure.recoil_cross_section(*angle, ticker),
-            _ => structure.cross_section(*angle, ticker),
-        };
-        angle.iter().map(one).collect::<visviva_core::Result<Vec<f64>>>()
+        for_chunks(threads, angle.len(), ticker, |at, ticker| match frame {
+            "lab" => structure.lab_cross_section(collision, angle[at], ticker),
+            "recoil" => structure.recoil_cross_section(angle[at], ticker),
+            _ => structure.cross_section(angle[at], ticker),
+        })
     })?
     .whole(py)?;
     moved(py, found, &shape)

@@ -197,6 +197,7 @@ impl Structure<'_> {
             angle: target,
             complement: PI - target.abs(),
             derivative: last.derivative * (last.angle / target),
+            ..last
         })
     }
 
@@ -255,6 +256,11 @@ impl Structure<'_> {
             }
             let step = (b - here.b).abs();
             here = self.sample(b, ticker)?;
+            // On a top that is just reached no more can be told.
+            if !here.angle.is_finite() {
+                here = low;
+                break;
+            }
             if sign(&here) == 0.0 {
                 break;
             }

@@ -55,7 +55,9 @@ impl<'a> CollisionIntegrals<'a> {
     pub fn at(&mut self, temperature: f64, diameter: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
         let (l, s) = self.orders;
         let weight = Weight { power: f64::from(s + 2), origin: ln(temperature) };
-        let [least, most] = self.ends(&weight, ticker)?;
+        let most = weight.most();
+        self.check_begins(weight.largest(), most)?;
+        let least = self.least(&weight, ticker)?;
         let mut pending = self.intervals(least, most);
         let factorial: f64 = (1..=s + 1).map(f64::from).product();
         let mut done: Vec<f64> = Vec::new();
@@ -92,14 +94,20 @@ impl<'a> CollisionIntegrals<'a> {
         Ok(done.iter().sum::<f64>() / (PI * diameter * diameter * sphere))
     }
 
-    /// Between which logarithms of energies the weight is no less than 1e-11 of its largest.
-    fn ends(&mut self, weight: &Weight, ticker: &mut Ticker<'_>) -> Result<[f64; 2]> {
+    /// Refuses a table that begins too far out for the fastest that will be looked at, before slow ones take their time.
+    ///
+    /// # Errors
+    /// As [`transport`](super::transport).
+    fn check_begins(&self, largest: f64, most: f64) -> Result<()> {
+        let intervals = self.intervals(largest, most);
+        let points = intervals.iter().flat_map(|ends| (0..POINTS).map(|k| kronrod::place(*ends, k)));
+        let fastest = points.filter(|y| *y <= most).fold(largest, f64::max);
+        self.deflector.check_begins(Exponential::exp(fastest))
+    }
+
+    /// The least logarithm of an energy at which the weight is no less than 1e-11 of its largest.
+    fn least(&mut self, weight: &Weight, ticker: &mut Ticker<'_>) -> Result<f64> {
         let largest = weight.largest();
-        let mut most = largest;
-        // No further: what is faster may be captured, of which nothing counts.
-        while weight.logarithm(most) > weight.logarithm(largest) - NEGLIGIBLE {
-            most += 0.1;
-        }
         // Cross sections that grow towards slow collisions, at most as 1/E², put more there.
         let lowest = weight.origin - 26.0 / (weight.power - 2.0);
         let mut least = weight.origin - 26.0 / weight.power;
@@ -109,7 +117,7 @@ impl<'a> CollisionIntegrals<'a> {
         {
             least -= LONGEST;
         }
-        Ok([least, most])
+        Ok(least)
     }
 
     /// Intervals of one grid, cut where orbits begin or end to be, which reach from one end to the other.
@@ -159,5 +167,15 @@ impl Weight {
     /// Where it is largest.
     fn largest(&self) -> f64 {
         self.origin + ln(self.power)
+    }
+    /// Up to where it is no less than 1e-11 of that.
+    fn most(&self) -> f64 {
+        let largest = self.largest();
+        let mut most = largest;
+        // No further: what is faster may be captured, of which nothing counts.
+        while self.logarithm(most) > self.logarithm(largest) - NEGLIGIBLE {
+            most += 0.1;
+        }
+        most
     }
 }

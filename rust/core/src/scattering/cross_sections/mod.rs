@@ -10,6 +10,7 @@
 
 mod branches;
 mod collision_integral;
+mod top;
 mod transport;
 
 pub use branches::Branch;
@@ -66,14 +67,9 @@ struct Sample {
     angle: f64,
     complement: f64,
     derivative: f64,
-}
-
-impl Sample {
+    closest_approach: f64,
     /// Whether ψ rises with b (1) or falls (−1); 0 where rounding of ψ is all there is of it.
-    fn rises(&self) -> f64 {
-        let told = self.b * self.derivative.abs() > ROUNDING * self.angle.abs();
-        if told { self.derivative.signum() } else { 0.0 }
-    }
+    way: f64,
 }
 
 /// As a part of ψ, what its derivative loses of it.
@@ -166,24 +162,23 @@ impl<'a> Structure<'a> {
     }
 
     fn sample(&self, b: f64, ticker: &mut Ticker<'_>) -> Result<Sample> {
-        let found = self.deflector.deflect(&[self.energy], &[b], true, 1, ticker)?;
-        Ok(sampled(b, found.first()))
+        Ok(sampled(b, self.deflections(&[b], ticker)?.first()))
     }
     /// Samples between two edges, cut where the derivative changes its sign.
     fn cut(&mut self, ends: [f64; 2], ticker: &mut Ticker<'_>) -> Result<()> {
         let places =
             places(ends, &self.edges, &self.bends, (self.length, self.deflector.lengths(self.energy)));
         let looked_from = self.bends.last().copied().unwrap_or(0.0).max(4.0 * self.length);
-        let energies = vec![self.energy; places.len()];
-        let found = self.deflector.deflect(&energies, &places, true, 1, ticker)?;
+        let found = self.deflections(&places, ticker)?;
+        let scattered = places.iter().zip(&found).filter(|(_, found)| found.status != Status::Captured);
+        let mut samples: Vec<Sample> = scattered.map(|(b, found)| sampled(*b, Some(found))).collect();
+        if ends[0] == 0.0 {
+            samples = self.about_top(samples, ticker)?;
+        }
         let mut stretch: Vec<Sample> = Vec::new();
-        for (b, deflection) in places.iter().zip(&found) {
-            if deflection.status == Status::Captured {
-                continue;
-            }
-            let next = sampled(*b, Some(deflection));
-            if let Some(at) = stretch.iter().rposition(|sample| sample.rises() != 0.0)
-                && stretch[at].rises() * next.rises() < 0.0
+        for next in samples {
+            if let Some(at) = stretch.iter().rposition(|sample| sample.way != 0.0)
+                && stretch[at].way * next.way < 0.0
             {
                 let top = self.rainbow(stretch[at], next, ticker)?;
                 // What is between tells nothing but rounding.
@@ -262,12 +257,13 @@ fn winding(square: f64, parts: impl Iterator<Item = f64>) -> Vec<Branch> {
 
 fn sampled(b: f64, found: Option<&Deflection>) -> Sample {
     let nothing = f64::NAN;
-    found.map_or(Sample { b, angle: nothing, complement: nothing, derivative: nothing }, |found| Sample {
-        b,
-        angle: found.angle,
-        complement: found.complement,
-        derivative: found.derivative,
-    })
+    let (angle, complement, derivative, closest_approach) = found
+        .map_or((nothing, nothing, nothing, nothing), |found| {
+            (found.angle, found.complement, found.derivative, found.closest_approach)
+        });
+    let told = b * derivative.abs() > ROUNDING * angle.abs();
+    let way = if told { derivative.signum() } else { 0.0 };
+    Sample { b, angle, complement, derivative, closest_approach, way }
 }
 
 /// The least and the largest angle of a stretch.

@@ -298,7 +298,7 @@ fn evaluate(
         }
     }
     let b: Vec<f64> = places.iter().map(|place| place.b).collect();
-    let found = deflector.deflect_what_can_be_told(&vec![energy; b.len()], &b, threads, ticker)?;
+    let found = deflector.deflect_what_can_be_told((&vec![energy; b.len()], &b), false, threads, ticker)?;
     let (mut values, mut noise) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
     let mut untold = None;
     for (Place { b, rest, weight }, deflection) in places.iter().zip(&found) {

@@ -12,6 +12,9 @@ use nalgebra::{Matrix4, Vector4};
 
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
 const TINY: f64 = 1.0 / (1 << 26) as f64;
+/// Of what has less than this part of its energy left on the top of a hill there, it is a part of that: as E − V(0) to 3/2, as
+/// impact parameters are that a cone or what is rounder tells from zero.
+const BARELY: f64 = 1e-6;
 /// The logarithm of 1e-70, the least turning point beside a center that attracts, as a part of where |V| is the energy: nearer
 /// to it r² V″ and (b/r₀)³ leave the range of numbers, and what remains is a wrong number.
 const NEAREST: f64 = -161.18;
@@ -40,6 +43,10 @@ impl Quadrature<'_> {
     pub(super) fn as_head_on(&self, energy: f64) -> (f64, f64) {
         match self.profile.center() {
             Center::Attractive(power) if power < 2.0 => self.around(energy, power),
+            Center::Open(top) if energy > top && energy - top < BARELY * energy => {
+                let left = (energy - top) / energy;
+                (0.0, TINY * (left * left.sqrt()))
+            }
             _ => (0.0, TINY),
         }
     }
@@ -119,7 +126,7 @@ impl Quadrature<'_> {
         let mut critical = Critical::default();
         match critical.way(self.profile, energy, 0.0) {
             Way::Through => {
-                found.derivative = found.angle / TINY;
+                found.derivative = found.angle / self.as_head_on(energy).1;
                 (found.angle, found.complement, found.closest_approach) = (0.0, PI, 0.0);
             }
             Way::Bounces(power) => {

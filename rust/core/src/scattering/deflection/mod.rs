@@ -194,6 +194,25 @@ impl Deflector {
     pub(in crate::scattering) fn power_at(&self, r: f64) -> f64 {
         self.profile.as_ref().map_or(f64::NAN, |profile| profile.power_at(profile.take_length(r)))
     }
+    /// Of what comes head-on, what part of its energy is left on the top of a hill at the center; none where there is no hill
+    /// that can be passed.
+    pub(in crate::scattering) fn left_on_top(&self, energy: f64) -> Option<f64> {
+        let profile = self.profile.as_ref().filter(|_| self.closed.is_none())?;
+        profile.top().map(|top| 1.0 - top / profile.take_energy(energy))
+    }
+    /// Refuses a table that begins beyond where what comes head-on with an energy turns.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `potential`.
+    pub(in crate::scattering) fn check_begins(&self, energy: f64) -> Result<()> {
+        let check = |profile: &Profile| profile.check_start(profile.take_energy(energy), 0.0, [0.0; 2]);
+        self.profile.as_ref().map_or(Ok(()), check)
+    }
+    /// How steeply 1 − b²/r² − V/E rises at a turning point, by the logarithm of r: by what part of itself a rounding of V
+    /// moves that.
+    pub(in crate::scattering) fn steepness(&self, energy: f64, b: f64, turning: f64) -> f64 {
+        self.profile.as_ref().map_or(f64::NAN, |profile| profile.steepness(energy, b, turning))
+    }
     /// The energies at which orbits begin or end to be: the extrema of V + r V′/2.
     pub fn critical_energies(&self) -> Vec<f64> {
         self.profile.as_ref().map(Profile::critical_energies).unwrap_or_default()
@@ -238,19 +257,19 @@ impl Deflector {
     ) -> Result<Vec<Deflection>> {
         self.collected(energy, b, (all, true), |found| *found, threads, ticker)
     }
-    /// As [`deflect`](Self::deflect) without derivatives and delays, but what cannot be told, as what comes exactly onto the
-    /// flat top of a barrier, is no number whose error is infinite.
+    /// As [`deflect`](Self::deflect), but what cannot be told, as what comes exactly onto the flat top of a barrier, is no
+    /// number whose error is infinite.
     ///
     /// # Errors
     /// As [`deflect`](Self::deflect), but for a potential that changes too fast.
     pub(in crate::scattering) fn deflect_what_can_be_told(
         &self,
-        energy: &[f64],
-        b: &[f64],
+        (energy, b): (&[f64], &[f64]),
+        all: bool,
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Deflection>> {
-        self.collected(energy, b, (false, false), |found| *found, threads, ticker)
+        self.collected(energy, b, (all, false), |found| *found, threads, ticker)
     }
     /// Their angles; NaN if captured.
     ///

@@ -12,7 +12,7 @@ use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
 use crate::potentials::features::Features;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use unit::unit_of_length;
 
 mod brackets;
@@ -72,6 +72,8 @@ pub(super) struct Profile {
     rim: Option<Rim>,
     endless_delay: f64,
     power_from: f64,
+    /// The energy that was last asked for where h is stationary, and those distances: one is often asked for again.
+    last_critical: Mutex<Option<(f64, Vec<f64>)>>,
 }
 
 impl Profile {
@@ -122,6 +124,7 @@ impl Profile {
             rim: None,
             endless_delay: 0.0,
             power_from: f64::INFINITY,
+            last_critical: Mutex::default(),
         };
         if domain[1] < f64::INFINITY {
             made.last_value = made.value(domain[1]);
@@ -211,6 +214,18 @@ impl Profile {
     }
     pub(super) fn center(&self) -> Center {
         self.center
+    }
+    /// The height of a hill at a center that can be passed.
+    pub(super) fn top(&self) -> Option<f64> {
+        match self.center {
+            Center::Open(top) if top > 0.0 => Some(top),
+            _ => None,
+        }
+    }
+    /// By the logarithm of r, how steeply 1 − b²/r² − V/E rises at a distance; all in the caller's units.
+    pub(super) fn steepness(&self, energy: f64, b: f64, r: f64) -> f64 {
+        let (own, root) = (self.take_length(r), b / r);
+        (2.0 * root).mul_add(root, own * self.force(own) / self.take_energy(energy))
     }
 
     /// The impact parameters, in the caller's units and ascending, with which what comes with an energy turns or passes where

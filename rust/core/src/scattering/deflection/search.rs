@@ -11,6 +11,20 @@ pub(super) fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool)
     }
 }
 
+/// Two distances whose ratio is no more are near each other.
+const NEAR: f64 = 1.0 + 1.0 / 1024.0;
+
+/// The same, to the bit, of a condition that ceases but once, between positive distances that may be a thousand octaves apart:
+/// first it is found about where, by octaves.
+pub(super) fn bisected_far(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut before, mut after) = (low, high);
+    while before > 0.0 && after > NEAR * before {
+        let middle = before.sqrt() * after.sqrt();
+        if holds(middle) { before = middle } else { after = middle }
+    }
+    bisected(low, high, |r| r <= before || (r < after && holds(r)))
+}
+
 /// The highest place of a function with one maximum between two distances, to half the digits, as it has no more.
 pub(super) fn highest(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     let golden = 0.618_033_988_749_894_9;

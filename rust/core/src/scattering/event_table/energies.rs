@@ -6,12 +6,11 @@
 //! tried, as it is for one table: directly, at energies and impact parameters between those that it is made of.
 
 use super::{EventTable, MOST_ERROR, Piece};
+use crate::Result;
 use crate::numerics::angles::{cos, sin};
 use crate::numerics::philox::{draw_of, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::scattering::deflection::{Deflector, Status};
-use crate::words::number;
-use crate::{Error, Result};
 use core::f64::consts::PI;
 
 /// How many tables: the first that does.
@@ -32,27 +31,17 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// Of relative motion with energies from the first to the second.
+    /// Of relative motion with energies from the first to the second; nothing if ψ is not smooth enough in that range.
     ///
     /// # Errors
-    /// `InvalidInput` naming `energy_spread` if ψ is not smooth enough in that range, and as [`EventTable::build`];
-    /// `Interrupted`.
+    /// As [`EventTable::build`]; `Interrupted`.
     pub fn build(
         deflector: &Deflector,
         [low, high]: [f64; 2],
         b_max: f64,
         threads: usize,
         ticker: &mut Ticker<'_>,
-    ) -> Result<Self> {
-        let refused = |why: String| {
-            let (low, high) = (number(low), number(high));
-            let message = format!(
-                "expected energies over which the deflection is smooth, but from {low} to {high} of relative motion \
-                 {why}; give a narrower one, or single energies as a Spectrum"
-            );
-            Err(Error::invalid("energy_spread", message))
-        };
-        let mut why = String::new();
+    ) -> Result<Option<Self>> {
         for order in ORDERS {
             let last = (order - 1) as f64;
             let least = low / high;
@@ -63,11 +52,11 @@ impl Energies {
                 EventTable::build(deflector, energies[k], b_max, 1, ticker)
             })?;
             if tables.iter().any(|table| table.pieces.contains(&Piece::Captured)) {
-                return refused("some are captured".to_owned());
+                return Ok(None);
             }
             let bytes: usize = tables.iter().map(EventTable::bytes).sum();
             if bytes > MOST_BYTES {
-                return refused(format!("{order} tables take {bytes} bytes"));
+                return Ok(None);
             }
             // (−1)^k, and half of it at the ends.
             let weight = |k: usize| {
@@ -77,15 +66,13 @@ impl Energies {
             let tables =
                 tables.into_iter().enumerate().map(|(k, table)| (low / energies[k], weight(k), table));
             let mut made = Self { low, tables: tables.collect(), error: 0.0 };
-            let (error, energy, b) = made.tried(deflector, [low, high], b_max, threads, ticker)?;
+            let error = made.tried(deflector, [low, high], b_max, threads, ticker)?;
             if error <= MOST_ERROR {
                 made.error = error;
-                return Ok(made);
+                return Ok(Some(made));
             }
-            let (error, energy, b) = (number(error), number(energy), number(b));
-            why = format!("{order} tables are off by {error} in sin²(ψ/2) at energy {energy} and b = {b}");
         }
-        refused(why)
+        Ok(None)
     }
     /// ψ of an energy of the range where b is this part of b_max, signed and not folded.
     pub fn angle(&self, energy: f64, part: f64) -> Option<f64> {
@@ -110,7 +97,7 @@ impl Energies {
     pub fn error(&self) -> f64 {
         self.error
     }
-    /// The largest error, and where: at random places, and at random energies beside the ends of all pieces.
+    /// The largest error at random places, and at random energies beside the ends of all pieces.
     fn tried(
         &self,
         deflector: &Deflector,
@@ -118,7 +105,7 @@ impl Energies {
         b_max: f64,
         threads: usize,
         ticker: &mut Ticker<'_>,
-    ) -> Result<(f64, f64, f64)> {
+    ) -> Result<f64> {
         let random =
             |i: u64, number| draw_of(key(0x656e_6572), i, number).number() as f64 / (1_u64 << 53) as f64;
         let ends = self.tables().flat_map(|table| {
@@ -131,7 +118,7 @@ impl Energies {
         let b: Vec<f64> = parts.iter().map(|part| part * b_max).collect();
         let found = deflector.deflect(&energies, &b, false, threads, ticker)?;
         let square = |angle: f64| sin(0.5 * angle) * sin(0.5 * angle);
-        let mut worst = (0.0, low, 0.0);
+        let mut worst = 0.0;
         for (at, found) in found.iter().enumerate() {
             let off = match self.angle(energies[at], parts[at]) {
                 Some(angle) if found.status != Status::Captured => {
@@ -139,8 +126,8 @@ impl Energies {
                 }
                 _ => 1.0,
             };
-            if off.is_nan() || off > worst.0 {
-                worst = (if off.is_nan() { 1.0 } else { off }, energies[at], b[at]);
+            if off.is_nan() || off > worst {
+                worst = if off.is_nan() { 1.0 } else { off };
             }
         }
         Ok(worst)

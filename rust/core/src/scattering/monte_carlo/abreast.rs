@@ -98,7 +98,7 @@ fn slot(bins: &Bins, value: f64, off: f64) -> Option<usize> {
 }
 
 impl<'a> Abreast<'a> {
-    /// Of a mixture, if it is one beam, elastic, and the machine has the instructions for it.
+    /// Of a mixture, if it is one beam, elastic and not direct, and the machine has the instructions for it.
     pub(super) fn of(mixture: &'a Mixture, tallies: &'a [Tally]) -> Option<Self> {
         let mut beams = mixture.beams();
         let beam = beams.next().filter(|_| beams.next().is_none() && tier() != Tier::Portable)?;
@@ -108,7 +108,7 @@ impl<'a> Abreast<'a> {
         };
         Some(Self {
             beam,
-            meeting: beam.meeting(),
+            meeting: beam.meeting()?,
             collision,
             circle: collision.circle(),
             tallies: tallies.iter().map(axes).collect(),

@@ -1,6 +1,7 @@
 //! A beam on a disc around one target: what an impact parameter leads to.
 
 mod beyond;
+mod direct;
 mod range;
 mod turning;
 
@@ -21,6 +22,7 @@ use crate::words::number;
 use crate::{Error, Result};
 use beyond::largest_beyond;
 use core::f64::consts::PI;
+use direct::Direct;
 use std::sync::Arc;
 
 /// A draw as a fraction: 2^-53.
@@ -35,6 +37,8 @@ enum Target {
     Table(Arc<EventTable>, f64),
     /// The same of a spread of energies, and the largest of both ends and the middle.
     Tables(Arc<Energies>, f64),
+    /// Where ψ is not smooth in those: found for each event.
+    Direct(Direct, f64),
 }
 
 /// How one projectile comes.
@@ -68,7 +72,7 @@ pub struct Beam {
 
 impl Beam {
     /// On any potential; `energy` is the projectile's in the laboratory, `masses` projectile and target. Of V = k/r as
-    /// [`coulomb`](Self::coulomb), of any other the table is built, or those of a spread of energies.
+    /// [`coulomb`](Self::coulomb), of any other the table is built, or those of a spread of energies if they tell its deflections.
     ///
     /// # Errors
     /// `InvalidInput` naming what is not positive and finite, a profile that cannot be, and as [`EventTable::build`] and
@@ -96,20 +100,26 @@ impl Beam {
             ));
         }
         let deflector = Deflector::for_table(potential, TOLERANCE)?;
+        let range = deflector.range();
         let target = if profile.energy_spread.is_none() {
             let relative = energy * share;
             let table = EventTable::build(&deflector, relative, b_max, threads, ticker)?;
             Target::Table(Arc::new(table), largest_beyond(&deflector, relative, b_max, threads, ticker)?)
         } else {
-            let tables = Energies::build(&deflector, relative, b_max, threads, ticker)?;
             let mut beyond = 0.0_f64;
             for energy in [relative[0], energy * share, relative[1]] {
                 beyond = beyond.max(largest_beyond(&deflector, energy, b_max, threads, ticker)?);
             }
-            Target::Tables(Arc::new(tables), beyond)
+            match Energies::build(&deflector, relative, b_max, threads, ticker)? {
+                Some(tables) => Target::Tables(Arc::new(tables), beyond),
+                None => {
+                    let deflector = Deflector::new(potential, TOLERANCE)?;
+                    Target::Direct(Direct::new(deflector, relative, b_max, threads, ticker)?, beyond)
+                }
+            }
         };
         // Where V ends as it is rounded is where the disc does.
-        let whole = (deflector.range() - b_max).abs() <= 2.0 * f64::EPSILON * b_max;
+        let whole = (range - b_max).abs() <= 2.0 * f64::EPSILON * b_max;
         Ok(Self { target, profile, whole, ..Self::bare(collision, energy, b_max) })
     }
     /// On V = k/r.
@@ -252,8 +262,28 @@ impl Beam {
         let direction = Direction { tilt: 0.0, azimuth: 0.0 };
         Arrival { energy: self.energy, share, stratum: 0, direction, exit }
     }
-    /// ψ of an event: signed and not folded; nothing if captured.
-    pub(super) fn deflection(&self, arrival: &Arrival) -> Option<f64> {
+    /// Whether deflections are found event by event.
+    pub(super) fn is_direct(&self) -> bool {
+        matches!(self.target, Target::Direct(..))
+    }
+    /// ψ of events: signed and not folded; nothing of captured ones.
+    ///
+    /// # Errors
+    /// As [`Deflector::deflect`].
+    pub(super) fn deflections(
+        &self,
+        arrivals: &[Arrival],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<Option<f64>>> {
+        let Target::Direct(direct, _) = &self.target else {
+            return Ok(arrivals.iter().map(|arrival| self.deflection(arrival)).collect());
+        };
+        let share = self.collision.relative_share();
+        let energies: Vec<f64> = arrivals.iter().map(|arrival| arrival.energy * share).collect();
+        direct.angles(&energies, arrivals.iter().map(|arrival| arrival.share.sqrt()), ticker)
+    }
+    /// ψ of an event: signed and not folded; nothing if captured, or if only [`deflections`](Self::deflections) tells it.
+    fn deflection(&self, arrival: &Arrival) -> Option<f64> {
         let (part, energy) = (arrival.share.sqrt(), arrival.energy);
         match &self.target {
             Target::Coulomb { reach, attracts } => {
@@ -262,23 +292,32 @@ impl Beam {
             }
             Target::Table(table, _) => table.angle(part),
             Target::Tables(tables, _) => tables.angle(energy * self.collision.relative_share(), part),
+            Target::Direct(..) => None,
         }
     }
-    /// The tables of a target that is no Coulomb center.
+    /// The tables of a target that has some.
     pub fn tables(&self) -> Vec<&EventTable> {
         match &self.target {
-            Target::Coulomb { .. } => Vec::new(),
+            Target::Coulomb { .. } | Target::Direct(..) => Vec::new(),
             Target::Table(table, _) => vec![table],
             Target::Tables(tables, _) => tables.tables().collect(),
         }
     }
     /// Half the angle of an event; nothing if captured.
     pub(super) fn half_angle(&self, arrival: &Arrival) -> Option<HalfAngle> {
+        let angle = if self.is_coulomb() { None } else { self.deflection(arrival) };
+        self.half_of(arrival, angle)
+    }
+    /// Half the angle of an event with that ψ.
+    pub(super) fn half_of(&self, arrival: &Arrival, angle: Option<f64>) -> Option<HalfAngle> {
         if let Target::Coulomb { reach, .. } = &self.target {
             let cotangent = reach * (arrival.energy / self.energy) * arrival.share.sqrt();
             return Some(HalfAngle::from_cotangent(cotangent));
         }
-        self.deflection(arrival).map(|angle| HalfAngle::of(folded(angle)))
+        angle.map(|angle| HalfAngle::of(folded(angle)))
+    }
+    fn is_coulomb(&self) -> bool {
+        matches!(self.target, Target::Coulomb { .. })
     }
     /// The value of a quantity of an event with that half of an angle; nothing of a captured one but where it came.
     pub(super) fn value_at(
@@ -302,12 +341,13 @@ impl Beam {
     pub(super) fn elastic(&self) -> Option<Collision> {
         if let [Exit::Elastic(collision)] = *self.exits { Some(collision) } else { None }
     }
-    /// What eight of its events meet at once.
-    pub(super) fn meeting(&self) -> Meeting {
+    /// What eight of its events meet at once; nothing where deflections are found one by one.
+    pub(super) fn meeting(&self) -> Option<Meeting> {
         match &self.target {
-            Target::Coulomb { reach, .. } => Meeting::Coulomb(reach / self.energy),
-            Target::Table(table, _) => Meeting::Table(TableAbreast::new(table)),
-            Target::Tables(tables, _) => Meeting::Tables(EnergiesAbreast::new(tables)),
+            Target::Coulomb { reach, .. } => Some(Meeting::Coulomb(reach / self.energy)),
+            Target::Table(table, _) => Some(Meeting::Table(TableAbreast::new(table))),
+            Target::Tables(tables, _) => Some(Meeting::Tables(EnergiesAbreast::new(tables))),
+            Target::Direct(..) => None,
         }
     }
     /// Whether a quantity is a function of one draw.

@@ -1,7 +1,6 @@
 //! Events one by one, for whoever wants more than counts: the very events that are counted.
 
-use super::draws::{COMPONENT, Draws};
-use super::{Mixture, Quantity, Strata, end_of};
+use super::{BATCH, Mixture, Quantity, Strata, end_of};
 use crate::Result;
 use crate::parallel::Ticker;
 
@@ -38,26 +37,26 @@ pub fn events(
     let end = end_of(first_event, n_events)?;
     let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
     let mut events = Vec::new();
-    for event in first_event..end {
+    let mut next = first_event;
+    while next < end {
         ticker.tick()?;
-        ticker.control().count(1);
-        let draws = Draws::new(seed, event);
-        let Some((component, beam)) = mixture.component(draws.bits(COMPONENT)) else {
-            continue;
-        };
-        let arrival = beam.arrival(draws);
-        let half = beam.half_angle(&arrival);
-        let values =
-            Quantity::ALL.map(|(_, quantity)| beam.value_at(quantity, &arrival, half).unwrap_or(f64::NAN));
-        events.push(Event {
-            component: component as u64,
-            channel: beam.channels().label(arrival.exit) as u64,
-            values,
-            deflection: beam.deflection(&arrival).unwrap_or(f64::NAN),
-            beam_energy: arrival.energy,
-            weight: weights.get(arrival.stratum).copied().unwrap_or(f64::NAN),
-            incidence: arrival.direction.tilt,
-        });
+        let stop = end.min(next + BATCH as u64);
+        for met in mixture.met(seed, next..stop, ticker)? {
+            let (beam, arrival, half) = (met.beam, &met.arrival, met.half());
+            let values =
+                Quantity::ALL.map(|(_, quantity)| beam.value_at(quantity, arrival, half).unwrap_or(f64::NAN));
+            events.push(Event {
+                component: met.component as u64,
+                channel: beam.channels().label(arrival.exit) as u64,
+                values,
+                deflection: met.angle.unwrap_or(f64::NAN),
+                beam_energy: arrival.energy,
+                weight: weights.get(arrival.stratum).copied().unwrap_or(f64::NAN),
+                incidence: arrival.direction.tilt,
+            });
+        }
+        ticker.control().count(stop - next);
+        next = stop;
     }
     Ok(events)
 }

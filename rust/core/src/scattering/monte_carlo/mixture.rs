@@ -2,6 +2,7 @@
 
 use super::beam::{Arrival, Beam, UNIT};
 use super::channels::{Channel, Channels};
+use super::draws::{COMPONENT, Draws};
 use super::profile::Profile;
 use super::quantity::Quantity;
 use super::strata::Strata;
@@ -13,6 +14,7 @@ use crate::scattering::histogram::{Edges, Lookup, Seen, Stepping, Steps};
 use crate::scattering::kinematics::HalfAngle;
 use crate::words::number;
 use crate::{Error, Result};
+use core::ops::Range;
 use std::sync::Arc;
 
 /// Beams, each with its part of the events.
@@ -128,6 +130,31 @@ impl Mixture {
     pub(super) fn is_drawn(&self) -> bool {
         self.beams().any(|beam| beam.profile.is_drawn())
     }
+    /// Whether deflections of some beam are found event by event.
+    pub(super) fn is_direct(&self) -> bool {
+        self.beams().any(Beam::is_direct)
+    }
+    /// How events come that have these draws, each with its component and its ψ, signed and not folded, nothing if captured.
+    ///
+    /// # Errors
+    /// As [`Deflector::deflect`](crate::scattering::deflection::Deflector::deflect).
+    pub(super) fn met(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> Result<Vec<Met<'_>>> {
+        let mut met: Vec<Met<'_>> = Vec::new();
+        for event in events {
+            let draws = Draws::new(seed, event);
+            if let Some((component, beam)) = self.component(draws.bits(COMPONENT)) {
+                met.push(Met { component, beam, arrival: beam.arrival(draws), angle: None });
+            }
+        }
+        for (component, beam) in self.beams().enumerate() {
+            let of_beam = |met: &&mut Met<'_>| met.component == component;
+            let arrivals: Vec<Arrival> =
+                met.iter().filter(|met| met.component == component).map(|met| met.arrival).collect();
+            let angles = beam.deflections(&arrivals, ticker)?;
+            met.iter_mut().filter(of_beam).zip(angles).for_each(|(met, angle)| met.angle = angle);
+        }
+        Ok(met)
+    }
     /// The least of the beams' smallest deflections.
     pub fn smallest_angle(&self) -> f64 {
         self.beams().map(Beam::smallest_angle).fold(f64::INFINITY, f64::min)
@@ -160,6 +187,22 @@ impl Mixture {
     pub(super) fn component(&self, draw: u64) -> Option<(usize, &Beam)> {
         let index = self.components.partition_point(|(start, _)| *start <= draw).checked_sub(1)?;
         self.components.get(index).map(|(_, beam)| (index, beam))
+    }
+}
+
+/// An event that came.
+#[derive(Debug)]
+pub(super) struct Met<'a> {
+    pub(super) component: usize,
+    pub(super) beam: &'a Beam,
+    pub(super) arrival: Arrival,
+    pub(super) angle: Option<f64>,
+}
+
+impl Met<'_> {
+    /// Half its angle; nothing if captured.
+    pub(super) fn half(&self) -> Option<HalfAngle> {
+        self.beam.half_of(&self.arrival, self.angle)
     }
 }
 
@@ -221,6 +264,20 @@ impl Tally {
         turns.sort_unstable();
         turns.dedup();
         Steps::new(&turns, &OfDraw { tally: self, beam, exit }, alone, ticker)
+    }
+}
+
+/// Counts an event in each tally.
+pub(super) fn count_one(
+    tallies: &[Tally],
+    (beam, arrival, half): (&Beam, &Arrival, Option<HalfAngle>),
+    counters: &mut [Vec<Vec<u64>>],
+) {
+    for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
+        let slot = tally.slot_of(beam, arrival, half);
+        if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
+            *counter += 1;
+        }
     }
 }
 

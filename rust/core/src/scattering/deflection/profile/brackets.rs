@@ -4,7 +4,7 @@
 //! found by halving, and beyond the grid by octaves.
 
 use super::super::grid::{POINTS, place, radius};
-use super::super::search::bisected;
+use super::super::search::bisected_far;
 use super::Profile;
 
 impl Profile {
@@ -12,11 +12,26 @@ impl Profile {
     /// pulls there, beyond which h rises again. Where U but touches the energy from below, h is level and goes on as it did:
     /// that distance counts twice.
     pub(in super::super) fn critical_radii(&self, energy: f64) -> Vec<f64> {
+        // Whoever finds the place taken does not wait.
+        if let Ok(last) = self.last_critical.try_lock()
+            && let Some((_, radii)) = last.as_ref().filter(|(known, _)| *known == energy)
+        {
+            return radii.clone();
+        }
+        let found = self.find_critical_radii(energy);
+        if let Ok(mut last) = self.last_critical.try_lock() {
+            *last = Some((energy, found.clone()));
+        }
+        found
+    }
+    fn find_critical_radii(&self, energy: f64) -> Vec<f64> {
         let mut found: Vec<f64> = self.pulling_rim(energy).into_iter().collect();
         for (at, pair) in self.extrema.windows(2).enumerate().rev() {
             let ([low, below], [high, above]) = (pair[0], pair[1]);
             if (below < energy) != (above < energy) {
-                found.push(bisected(low, high, |r| (self.circular_energy(r) < energy) == (below < energy)));
+                found.push(bisected_far(low, high, |r| {
+                    (self.circular_energy(r) < energy) == (below < energy)
+                }));
             }
             // Of three neighbours the middle is a top or a bottom.
             let top = at > 0 && above < below && below < energy;

@@ -17,6 +17,9 @@ const ROUNDING: f64 = 1.0 / (1_u64 << 43) as f64;
 /// Powers of two beyond the grid, the farthest first: squares and higher powers in V may leave the range of numbers.
 const BEYOND: [i32; 6] = [900, 450, 300, 200, 150, 100];
 
+/// Tolerances to choose from.
+const ENOUGH: [f64; 9] = [1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
+
 impl Profile {
     /// Refuses what does not go to zero far out.
     ///
@@ -102,13 +105,19 @@ impl Profile {
         if unresolved.is_none() && found.angle.is_finite() && found.error.is_finite() {
             return Ok(());
         }
-        Err(self.is_not_resolved(energy, unresolved.map_or(found.closest_approach, |[from, ..]| *from)))
+        let [from, _, most] = unresolved.copied().unwrap_or([found.closest_approach, 0.0, f64::NAN]);
+        Err(self.is_not_resolved(energy, from, most / energy))
     }
     #[cold]
-    fn is_not_resolved(&self, energy: f64, r: f64) -> Error {
+    fn is_not_resolved(&self, energy: f64, r: f64, part: f64) -> Error {
+        // What is so small a part of the energy may be left as it is.
+        let goes_on =
+            ENOUGH.into_iter().find(|tolerance| part <= *tolerance).map_or_else(String::new, |tolerance| {
+                format!(", or give deflect() or deflection_angle() a larger tolerance={}", number(tolerance))
+            });
         let message = format!(
             "expected one that can be resolved, but about r = {} it changes too fast for what comes with energy {}; \
-             let it be smoother there",
+             let it be smoother there{goes_on}",
             number(self.give_length(r)),
             number(scale(energy, self.energy))
         );

@@ -80,7 +80,9 @@ impl Beam {
         let [least, _] = self.profile.energies(self.energy);
         match &self.target {
             Target::Coulomb { reach, .. } => HalfAngle::from_cotangent(reach * (least / self.energy)),
-            Target::Table(_, beyond) | Target::Tables(_, beyond) => HalfAngle::of(*beyond),
+            Target::Table(_, beyond) | Target::Tables(_, beyond) | Target::Direct(_, beyond) => {
+                HalfAngle::of(*beyond)
+            }
         }
     }
     /// The deflection at the edge of the disc, or the greatest beyond: of V = k/r no event is scattered by less.
@@ -123,6 +125,6 @@ impl Beam {
     /// fall with b, and all events have one energy and one channel.
     pub(in crate::scattering) fn falls(&self) -> bool {
         let elastic = matches!(*self.exits, [Exit::Elastic(_)]);
-        self.tables().is_empty() && self.profile.energy_spread.is_none() && elastic
+        self.is_coulomb() && self.profile.energy_spread.is_none() && elastic
     }
 }

@@ -44,7 +44,7 @@ impl Beam {
             Target::Table(..) if quantity == Quantity::ImpactParameter => Vec::new(),
             Target::Table(table, _) => self.turns(quantity, exit, table),
             // No step function is made of what has several draws.
-            Target::Tables(..) => Vec::new(),
+            Target::Tables(..) | Target::Direct(..) => Vec::new(),
         }
     }
     /// The first draw with at least that b/b_max, as it is rounded: pieces of a table do not quite meet, and what is looked for
