@@ -80,8 +80,9 @@ pub(crate) fn scattering_branches<'py>(
         let structure = Structure::new(&deflector, energy, ticker)?;
         let mut counts = Vec::with_capacity(angle.len());
         let mut columns: [Vec<f64>; 4] = Default::default();
-        let found =
-            for_chunks(threads, angle.len(), ticker, |at, ticker| structure.branches(angle[at], ticker))?;
+        let found = for_chunks(threads, angle.len(), ticker, |at, ticker| {
+            structure.branches(number_at(&angle, at), ticker)
+        })?;
         for branches in found {
             counts.push(branches.len());
             for branch in &branches {
@@ -102,6 +103,11 @@ pub(crate) fn scattering_branches<'py>(
     Ok((counts, columns.into_iter().map(moved).collect::<PyResult<_>>()?))
 }
 
+/// A number of some; places are those that there are.
+fn number_at(numbers: &[f64], place: usize) -> f64 {
+    numbers.get(place).copied().unwrap_or(f64::NAN)
+}
+
 /// dσ/dΩ at each angle in a frame: "cm", "lab" or "recoil"; `mass_ratio` is m₁/m₂.
 #[pyfunction]
 pub(crate) fn differential_cross_section<'py>(
@@ -120,9 +126,9 @@ pub(crate) fn differential_cross_section<'py>(
         let structure = Structure::new(&deflector, energy, ticker)?;
         let collision = Collision::new(mass_ratio, 1.0)?;
         for_chunks(threads, angle.len(), ticker, |at, ticker| match frame {
-            "lab" => structure.lab_cross_section(collision, angle[at], ticker),
-            "recoil" => structure.recoil_cross_section(angle[at], ticker),
-            _ => structure.cross_section(angle[at], ticker),
+            "lab" => structure.lab_cross_section(collision, number_at(&angle, at), ticker),
+            "recoil" => structure.recoil_cross_section(number_at(&angle, at), ticker),
+            _ => structure.cross_section(number_at(&angle, at), ticker),
         })
     })?
     .whole(py)?;
