@@ -36,7 +36,8 @@ def first_turned_back(start: float, times: NDArray[np.float64]) -> int | None:
     """The first of times (T,) that leads back, where the first after `start` that is another tells the direction."""
     direction, before = 0.0, start
     for at in range(0, len(times), _BLOCK):
-        steps = np.diff(times[at : at + _BLOCK], prepend=before)
+        with np.errstate(over="ignore"):  # of times at both ends of the range
+            steps = np.diff(times[at : at + _BLOCK], prepend=before)
         before = times[min(at + _BLOCK, len(times)) - 1]
         moving = steps != 0.0
         if direction == 0.0 and moving.any():

@@ -24,6 +24,7 @@ WALLS: dict[str, Formula] = {
     "sech": lambda u: 5.0 / np.cosh(u) ** 2,
     "root": lambda u: 5.0 * np.exp(1.0 - np.sqrt(1.0 + u**2)),
     "product": lambda u: 5.0 / (1.0 + u**2) / (1.0 + u**2),
+    "raised": lambda u: 5.0 * (1.0 / (1.0 + u**2)) ** 4,
     "cube": lambda u: 5.0 * (1.0 + u**2) ** -1.5,
     "sixth power": lambda u: 5.0 / (1.0 + u**6),
     "eighth power": lambda u: 5.0 / (1.0 + u**8),
@@ -59,6 +60,7 @@ def test_so_do_systems_in_generalized_coordinates(name: str, width: float) -> No
         "sech": lambda u: 5 / sympy.cosh(u) ** 2,
         "root": lambda u: 5 * sympy.exp(1 - sympy.sqrt(1 + u**2)),
         "product": lambda u: 5 / (1 + u**2) / (1 + u**2),
+        "raised": lambda u: 5 * (1 / (1 + u**2)) ** 4,
         "cube": lambda u: 5 * (1 + u**2) ** sympy.Rational(-3, 2),
         "sixth power": lambda u: 5 / (1 + u**6),
         "eighth power": lambda u: 5 / (1 + u**8),
@@ -73,6 +75,25 @@ def test_so_do_systems_in_generalized_coordinates(name: str, width: float) -> No
     # Of the default tolerance of 1e-12, which a thin wall costs some digits.
     assert lagrangian.run(100.0).velocity[-1, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
     assert hamiltonian.run(100.0).momentum[-1, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])
+def test_an_atom_far_away_scatters_however_its_potential_is_written(method: str) -> None:
+    """Lennard-Jones, 1e-3 across and passed within it: by quotients that are raised, and by powers that are divided."""
+
+    def atom(of: Formula) -> vv.Scene:
+        def potential(r: Any, v: Any, t: Any) -> Any:
+            return of(((r[0] - PLACE) ** 2 + (r[1] - 0.3e-3) ** 2) ** 0.5)
+
+        return vv.Scene(BODY, vv.ExpressionForce(potential=potential))
+
+    s = 1e-3
+    wanted = vv.scattering.deflect(vv.potentials.LennardJones(1.0, s), energy=0.5, impact_parameter=0.3 * s).angle
+    for of in (lambda r: 4.0 * ((s / r) ** 12 - (s / r) ** 6), lambda r: 4.0 * (s**12 / r**12 - s**6 / r**6)):
+        velocity = atom(of).run(t=80.0, method=method, rtol=1e-11).velocity[-1, 0]
+        # After some hundred steps, of an angle that amplifies what they are off.
+        assert velocity[0] == pytest.approx(np.cos(wanted), rel=0.0, abs=1e-6)
+        assert abs(velocity[1]) == pytest.approx(abs(np.sin(wanted)), rel=0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])

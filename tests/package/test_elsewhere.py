@@ -39,9 +39,9 @@ def test_methods_of_others_are_answered_with_ours(method: str, cure: str) -> Non
 
 
 def test_no_method_of_ours_is_taken_for_anothers() -> None:
-    from visviva.request import _OF_OTHERS
+    from visviva._methods_elsewhere import OF_OTHERS
 
-    assert not METHODS & {*_OF_OTHERS}
+    assert not METHODS & {*OF_OTHERS}
 
 
 @pytest.mark.parametrize(

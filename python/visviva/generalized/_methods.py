@@ -111,8 +111,8 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
     if isinstance(method, str) and method in (*DISCRETE, *CONSTRAINED):
         _check_discrete(method, system, dt)
         return method
+    from visviva._methods_elsewhere import refuse_of_others
     from visviva.integrators import Method, methods
-    from visviva.request import refuse_of_others
 
     known: dict[str, Method] = {each.name: each for each in methods()}
     if isinstance(method, Method):

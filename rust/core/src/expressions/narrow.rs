@@ -14,6 +14,8 @@ const STEEPEST: f64 = 4.0;
 /// What falls with a power of places and times that is lower than this tells of itself from afar; a product of several that fall
 /// as this does not.
 const FALLS_SLOWLY: f64 = 2.0;
+/// The highest power that is told apart.
+const HIGHEST: f64 = 64.0;
 
 /// How something narrow depends on its argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +40,14 @@ pub struct Narrow {
 /// What may be narrow among these expressions: functions like exp where their arguments change on the way; sin and cos where the
 /// time alone changes them, as drives do, which may be faster than a step, and too weak for its errors; and what falls steeply.
 pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
-    let falls = fall(graph);
+    let (growth, raised) = (growth(graph), raised(graph, roots));
     let may_be_narrow = |node: Id| {
         let (kind, argument) = match *graph.node(node) {
             Node::Call(function, argument) => (Kind::Call(function), argument),
-            Node::Quotient(_, below) => (Kind::Divided(1.0), below),
-            Node::Power(base, exponent) => (Kind::Divided(-f64::from_bits(exponent)), base),
+            Node::Quotient(_, below) => (Kind::Divided(raised[node as usize]), below),
+            Node::Power(base, exponent) => {
+                (Kind::Divided(-f64::from_bits(exponent) * raised[node as usize]), base)
+            }
             _ => return None,
         };
         let changes = graph.dependence(argument);
@@ -54,7 +58,7 @@ pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
             Kind::Call(Function::Sin | Function::Cos) => changes == Dependence::Time,
             Kind::Call(_) => false,
             Kind::Divided(exponent) => {
-                changes > Dependence::Parameters && exponent * falls[argument as usize] >= FALLS_SLOWLY
+                changes > Dependence::Parameters && exponent * growth[argument as usize] >= FALLS_SLOWLY
             }
         };
         may.then_some(Narrow { kind, node, argument })
@@ -63,7 +67,7 @@ pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
 }
 
 /// The power of places and times with which every node grows at most, far out.
-fn fall(graph: &Graph) -> Vec<f64> {
+fn growth(graph: &Graph) -> Vec<f64> {
     let mut powers: Vec<f64> = Vec::with_capacity(graph.nodes().len());
     for (index, node) in graph.nodes().iter().enumerate() {
         let of = |id: Id| powers[id as usize];
@@ -76,7 +80,6 @@ fn fall(graph: &Graph) -> Vec<f64> {
             Node::Quotient(a, _) => of(*a),
             Node::Power(base, exponent) => of(*base) * f64::from_bits(*exponent).max(0.0),
             Node::Call(Function::Sqrt, argument) => 0.5 * of(*argument),
-
             Node::Call(..) | Node::Angle(..) => 0.0,
         };
         powers.push(power);
@@ -84,12 +87,43 @@ fn fall(graph: &Graph) -> Vec<f64> {
     powers
 }
 
-/// Whether expressions are polynomials up to the third degree: of a step that is nearly straight their ends and slopes there tell
-/// all.
-pub fn is_cubic(graph: &Graph, expressions: &[Id]) -> Vec<bool> {
-    let degrees = degrees(graph, false);
-    let waves = |id: Id| graph.any(&[id], |node| matches!(node, Node::Call(..)));
-    expressions.iter().map(|&id| degrees[id as usize] <= 3.0 && !waves(id)).collect()
+/// To which power every node is raised at most, on the way to these expressions: (s/r)¹² falls as its quotient does not.
+fn raised(graph: &Graph, roots: &[Id]) -> Vec<f64> {
+    let mut powers = vec![1.0_f64; graph.nodes().len()];
+    for id in graph.reachable(roots).into_iter().rev() {
+        let own = powers[id as usize];
+        let mut raise = |child: Id, to: f64| {
+            let power = &mut powers[child as usize];
+            *power = power.max(to.min(HIGHEST));
+        };
+        match graph.node(id) {
+            Node::Sum(_, terms) => terms.iter().for_each(|&(_, term)| raise(term, own)),
+            Node::Product(a, b) if a == b => raise(*a, 2.0 * own),
+            Node::Product(a, b) | Node::Quotient(a, b) => {
+                [*a, *b].into_iter().for_each(|part| raise(part, own))
+            }
+            Node::Power(base, exponent) => raise(*base, own * f64::from_bits(*exponent).abs()),
+            Node::Call(Function::Sqrt, argument) => raise(*argument, 0.5 * own),
+            _ => {}
+        }
+    }
+    powers
+}
+
+/// Whether expressions have no roots and quotients: where the motion is smooth so are they, and the ends of a step, with the
+/// slopes there, tell all of them.
+pub fn is_smooth(graph: &Graph, expressions: &[Id]) -> Vec<bool> {
+    let bends = |node: &Node| match *node {
+        Node::Quotient(_, below) => graph.dependence(below) > Dependence::Parameters,
+        Node::Power(base, exponent) => {
+            let exponent = f64::from_bits(exponent);
+            graph.dependence(base) > Dependence::Parameters && (exponent < 0.0 || exponent.fract() != 0.0)
+        }
+        Node::Call(function, _) => !matches!(function, Function::Sin | Function::Cos),
+        Node::Angle(..) => true,
+        _ => false,
+    };
+    expressions.iter().map(|&id| !graph.any(&[id], bends)).collect()
 }
 
 /// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree and waves that stand in

@@ -4,7 +4,8 @@
 //! arguments move smoothly between those by less than the reach, so they do between any two places where the method looks. What
 //! falls as a power of an argument does so where that changes by no large factor.
 
-use super::features::{AtEnds, BELOW, BEYOND, Fades};
+use super::SHARE;
+use super::features::{AtEnds, BELOW, BEYOND, Fades, REACH_OF_POWERS};
 use crate::expressions::machine::Width;
 use crate::expressions::{Code, Machine};
 use crate::numerics::element::{Pass, View};
@@ -112,7 +113,7 @@ impl<S: Width + Controlled> Ends<S> {
             let (least, most, fastest) = hull(ends, slopes, h * (1.0 / 3.0));
             let moves_little = match at_ends[index] {
                 AtEnds::Fades(_) => most - least <= little || fastest * gap <= little,
-                AtEnds::Power(power) => grows_little((least, most), fastest * gap, factor(little / power)),
+                AtEnds::Power(power) => grows_little((least, most), fastest * gap, factor(power)),
             };
             Hull { ends, least, most, moves_little }
         };
@@ -161,9 +162,9 @@ fn hull<V: Real>([u, v]: [V; 2], [du, dv]: [V; 2], third: V) -> (V, V, V) {
     (least, most, fastest * V::splat(3.0))
 }
 
-/// By what part of itself an argument may change whose logarithm may move by so much.
-fn factor(little: f64) -> f64 {
-    Exponential::exp(little) - 1.0
+/// By what part of itself an argument may change of whose inverse something goes with a power.
+fn factor(power: f64) -> f64 {
+    Exponential::exp(SHARE * REACH_OF_POWERS / power) - 1.0
 }
 
 /// Whether an argument changes by no more than that part of itself, on either side of zero.
@@ -224,7 +225,7 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
                 AtEnds::Fades(Fades::Beyond) => most.less(under).or(beyond.less(least)),
                 AtEnds::Fades(Fades::Nowhere) => most.less(least),
                 AtEnds::Power(power) => {
-                    let part = factor(self.little / power);
+                    let part = factor(*power);
                     all = all.and(grows_little((least, most), fastest * gap, V::splat(part)));
                     continue;
                 }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::expressions::assembler::compile;
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Dependence, Graph};
-use crate::expressions::narrow::{self, Kind, is_cubic};
+use crate::expressions::narrow::{self, Kind, is_smooth};
 use crate::expressions::program::{LinearSystem, Output, roots};
 use crate::expressions::{Code, Id, Node};
 use rustc_hash::FxHashMap;
@@ -32,6 +32,10 @@ pub(super) enum Fades {
     Nowhere,
 }
 
+/// The most that the logarithm of what falls as a power may move between two places where a method looks: what of it is felt there
+/// falls less fast than an exponential function, and what it is where it is greatest may be anything beside it.
+pub(super) const REACH_OF_POWERS: f64 = 3.0;
+
 /// Where exp is 0.
 pub(super) const BELOW: f64 = -746.0;
 /// Where tanh of half the argument differs from ±1 by less than e⁻⁸⁰.
@@ -53,7 +57,7 @@ impl Fades {
 pub struct Equations<'a> {
     /// The graph that has them.
     pub graph: &'a mut Graph,
-    /// Numbers of a state, and parameters.
+    /// Numbers of a state.
     pub numbers: usize,
     /// Parameters.
     pub parameters: usize,
@@ -87,6 +91,14 @@ pub struct Features {
 }
 
 impl Features {
+    /// The most that an argument is to move between two places where a method looks, which is so much of others.
+    pub(super) fn reach(&self, argument: usize, reach: f64) -> f64 {
+        match self.at_ends[argument] {
+            AtEnds::Power(_) => reach.min(REACH_OF_POWERS),
+            AtEnds::Fades(_) => reach,
+        }
+    }
+
     /// Of equations, if they have any.
     ///
     /// # Errors
@@ -118,8 +130,11 @@ impl Features {
                 Kind::Divided(power) => Some(power),
                 Kind::Call(_) => None,
             });
-            // Beside functions of the same argument it tells no more than they.
-            powers.reduce(f64::max).filter(|_| !has(index, &|_| true))
+            let (count, most) =
+                powers.fold((0, 0.0), |(n, most): (u32, f64), power| (n + 1, most.max(power)));
+            // Several of one argument may be factors of each other; beside functions of it they tell no more than those.
+            let power = if count > 1 { 2.0 * most } else { most };
+            (count > 0 && !has(index, &|_| true)).then_some(power)
         };
         let fade = |index| match (has(index, &turns), has(index, &is_exp), power(index)) {
             (true, ..) => Fades::Nowhere,
@@ -127,10 +142,10 @@ impl Features {
             _ => Fades::Beyond,
         };
         let fades: Vec<Fades> = (0..arguments.len()).map(fade).collect();
-        let cubic = is_cubic(of.graph, &arguments);
+        let smooth = is_smooth(of.graph, &arguments);
         let at_ends = |index: usize| match power(index) {
             Some(power) => AtEnds::Power(power),
-            None if cubic[index] => AtEnds::Fades(fades[index]),
+            None if smooth[index] => AtEnds::Fades(fades[index]),
             None => AtEnds::Fades(Fades::Nowhere),
         };
         let at_ends: Vec<AtEnds> = (0..arguments.len()).map(at_ends).collect();
@@ -138,7 +153,7 @@ impl Features {
         let plainly = |kind| matches!(kind, Kind::Call(function) if is_exp(function) || is_tanh(function));
         let is_plain = |index: usize| {
             let mut own = found.iter().zip(&owners).filter(|(_, owner)| **owner == index);
-            cubic[index] && own.all(|(one, _)| plainly(one.kind) && bent.binary_search(&one.node).is_err())
+            smooth[index] && own.all(|(one, _)| plainly(one.kind) && bent.binary_search(&one.node).is_err())
         };
         let plain: Vec<bool> = (0..arguments.len()).map(is_plain).collect();
         // tanh goes as the exponential function of twice its argument.

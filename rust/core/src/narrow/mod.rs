@@ -1,9 +1,10 @@
 //! What is too narrow for a step to see: smooth walls, bumps and pulses that lie between the places where a method looks.
 //!
 //! The one idea: what is algebraic and falls slowly tells of itself from afar, and a step control sees it; exp and what is written
-//! with it (tanh, 1/cosh), and 1/(1 + u⁸), may be nothing at two neighboring places and all that matters in between. But their arguments are seen everywhere: an
-//! argument that moves by more than a little between two places is followed on the way ([`search`]), and where the function at
-//! what it goes through changes the rates by what matters, the step is taken again, and ends before that.
+//! with it (tanh, 1/cosh), and 1/(1 + u⁸), may be nothing at two neighboring places and all that matters in between. But their
+//! arguments are seen everywhere: an argument that moves by more than a little between two places is followed on the way
+//! ([`search`]), and where the function at what it goes through changes the rates by what matters, the step is taken again, and
+//! ends before that.
 //!
 //! Of most steps the arguments at the ends and how fast they move there tell that nothing is to be followed.
 

@@ -144,6 +144,7 @@ impl Search {
                 points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
                 let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
                 let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
+                let reach = self.of.reach(argument, reach);
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }

@@ -44,7 +44,7 @@ pub struct MatrixExponential {
 }
 
 impl MatrixExponential {
-    /// Of a matrix of `n` rows, for times up to about `longest`.
+    /// Of a matrix of `n` rows, with numbers of like size in a time of about `longest`.
     pub fn new(matrix: Vec<DoubleDouble>, n: usize, longest: f64) -> Self {
         let inverses = (1..=TERMS).map(|k| DoubleDouble::one() / DoubleDouble::from(k as f64)).collect();
         let step = Columns::new(n, n);

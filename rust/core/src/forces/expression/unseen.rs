@@ -52,7 +52,7 @@ impl Unseen {
     /// As [`System::seen_until`](crate::ode::system::System::seen_until).
     ///
     /// # Errors
-    /// None.
+    /// As that.
     pub(super) fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
         let Self { way, rows, arrangement } = self;
         let time = Lanes::splat(way.time);

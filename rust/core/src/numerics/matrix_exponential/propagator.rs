@@ -60,11 +60,11 @@ enum Whole {
 }
 
 impl Propagator {
-    /// Of a matrix of `n` rows, whose shortest period or decay is about so long.
-    pub fn new(matrix: Vec<DoubleDouble>, n: usize, shortest: f64) -> Self {
+    /// Of a matrix of `n` rows, with numbers of like size in a time of about `longest`.
+    pub fn new(matrix: Vec<DoubleDouble>, n: usize, longest: f64) -> Self {
         let mut new = Self {
             terms: Columns::of_matrices(&vec![Columns::one(n); TERMS + 1]),
-            flow: MatrixExponential::new(matrix, n, shortest),
+            flow: MatrixExponential::new(matrix, n, longest),
             times: Vec::new(),
             moves: Vec::new(),
             rests: Matrices::default(),
@@ -79,8 +79,8 @@ impl Propagator {
     }
 
     /// Takes another matrix, of as many rows, and keeps the room.
-    pub fn take(&mut self, matrix: Vec<DoubleDouble>, shortest: f64) {
-        self.flow.take(matrix, shortest);
+    pub fn take(&mut self, matrix: Vec<DoubleDouble>, longest: f64) {
+        self.flow.take(matrix, longest);
         self.times.clear();
         self.moves.clear();
         self.digits.clear();
