@@ -6,6 +6,7 @@
 //! it pushes, it may stay so.
 
 use super::Features;
+use super::features::AtEnds;
 use super::way::Way;
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -69,14 +70,20 @@ impl Search {
     }
 
     /// The part of a way on which nothing that matters is unseen, short of what is.
-    pub(super) fn seen_until(&mut self, parameters: &[f64], way: Way, reach: f64, tolerance: f64) -> f64 {
+    pub(super) fn seen_until(
+        &mut self,
+        parameters: &[f64],
+        way: Way,
+        asked: (f64, &[AtEnds]),
+        tolerance: f64,
+    ) -> f64 {
         if self.parameters != parameters {
             let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             self.values.set_parameters(&wide);
             self.rates.set_parameters(&wide);
             self.parameters.copy_from_slice(parameters);
         }
-        let mut pieces = self.pieces(&way, reach);
+        let mut pieces = self.pieces(&way, asked);
         pieces.sort_by(|a, b| a.from.theta.total_cmp(&b.from.theta));
         let sizes = sizes(&way, self.of.rates.outputs());
         let mut first = f64::INFINITY;
@@ -106,7 +113,7 @@ impl Search {
     }
 
     /// The pieces of the way on which arguments move by more than the reach between two places where the method looks.
-    fn pieces(&mut self, way: &Way, reach: f64) -> Vec<Piece> {
+    fn pieces(&mut self, way: &Way, (reach, at_ends): (f64, &[AtEnds])) -> Vec<Piece> {
         let mut places = vec![0.0];
         for looks in way.nodes.windows(2) {
             let parts = ((looks[1] - looks[0]) / SPACING).ceil().max(2.0);
@@ -144,7 +151,7 @@ impl Search {
                 points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
                 let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
                 let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
-                let reach = self.of.reach(argument, reach);
+                let reach = at_ends[argument].reach(reach);
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }
