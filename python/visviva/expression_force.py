@@ -6,6 +6,7 @@ once, beside any other force.
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -142,6 +143,7 @@ def _of_state(potential: Any, names: tuple[str, ...]) -> Any:
     if placed[1:2] in (["t"], ["time"]) and takes(function, _STATE[::2], names):
         step = 2
     elif takes(function, _STATE[:1], names):
+        _refuse_time_elsewhere(function, names)
         step = len(_STATE)
     else:
         return potential
@@ -152,6 +154,17 @@ def _of_state(potential: Any, names: tuple[str, ...]) -> Any:
     # What errors in it are told to come from.
     of_state.__qualname__ = getattr(function, "__qualname__", type(function).__qualname__)
     return of_state
+
+
+def _refuse_time_elsewhere(function: Callable[..., Any], names: tuple[str, ...]) -> None:
+    """Refuse a time that a function of the place has a default for: it would stand still."""
+    for name in ("t", "time"):
+        if name in inspect.signature(function).parameters and name not in names:
+            raise InvalidInput(
+                "potential",
+                f"expected the time in the second or the third place, f(r, {name}) or f(r, v, {name}), and names of "
+                f"parameters after it, got {name} elsewhere",
+            )
 
 
 def _components(argument: str, given: Any, names: tuple[str, ...]) -> tuple[Any, ...]:

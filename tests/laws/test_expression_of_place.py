@@ -100,3 +100,16 @@ def test_what_fails_in_a_potential_of_the_place_is_told_by_its_name() -> None:
     with pytest.raises(KeyError) as raised:
         vv.ExpressionForce(potential=broken)
     assert "broken" in raised.value.__notes__[0]
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [
+        lambda r, k, t=0.0: -k * t * r[0],
+        lambda r, k=6.0, *, t=1.0: -k * t * r[0],
+        lambda r, *, time=1.0, k=6.0: -k * time * r[0],
+    ],
+)
+def test_a_time_that_would_stand_still_is_refused(potential: Any) -> None:
+    with pytest.raises(vv.InvalidInput, match="the time in the second or the third place"):
+        vv.ExpressionForce(potential=potential, parameters={"k": 6.0})
