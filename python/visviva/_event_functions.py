@@ -38,6 +38,7 @@ def check_event_function(call: Callable[..., SupportsFloat]) -> None:
     visviva.InvalidInput
         Naming ``call``, with what it is called with.
     """
+    _refuse_time_elsewhere(call)
     if sees_turning(call):
         return
     try:
@@ -46,6 +47,16 @@ def check_event_function(call: Callable[..., SupportsFloat]) -> None:
         raise InvalidInput(
             "call", f"{error.message}, or beside rigid bodies as f({', '.join(_OF_RIGID_BODIES)})"
         ) from None
+
+
+def _refuse_time_elsewhere(call: Callable[..., SupportsFloat]) -> None:
+    # As forces have it, which take (position, velocity, t): the place would be taken for the time.
+    from visviva.generalized._source import placed_arguments
+
+    placed = placed_arguments(call)
+    if {"t", "time"} & {*placed[1:3]} and not {"t", "time"} & {*placed[:1]}:
+        got = ", ".join(placed)
+        raise InvalidInput("call", f"expected a function f({', '.join(_OF_POINTS)}), in this order, got f({got})")
 
 
 def told(which: int, function: Callable[..., SupportsFloat]) -> Callable[..., SupportsFloat]:

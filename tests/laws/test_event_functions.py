@@ -63,3 +63,12 @@ def test_names_of_bodies_are_resolved_where_an_event_has_some() -> None:
     assert (there[2]["body"], there[2]["about"]) == (1, 0)
     with pytest.raises(vv.InvalidInput, match="second: expected two bodies, got 0 twice"):
         with_body_indices(to_core([vv.events.distance("Sun", 0, below=1.0)]), ("Sun", "Earth"))
+
+
+@pytest.mark.parametrize("call", [lambda r, v, t: v[0, 0], lambda position, velocity, time: position[0, 0]])
+def test_the_order_of_forces_is_refused(call: Any) -> None:
+    """Where the place was taken for the time, no event was found, and nothing said."""
+    scene = vv.Scene(vv.Particles([1.0], [[-3.0, 0.0, 0.0]], [[1.0, 0.5, 0.0]]), vv.UniformField([-0.5, 0.0, -1.0]))
+    with pytest.raises(vv.InvalidInput, match=r"in this order, got f\("):
+        scene.run(t=10.0, events=[call])
+    assert scene.run(t=10.0, events=[lambda t, r, v: v[0, 0]]).events.t == pytest.approx([2.0], rel=1e-12, abs=0.0)
