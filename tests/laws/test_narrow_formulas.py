@@ -18,24 +18,32 @@ import visviva as vv
 PLACE = 57.3
 Formula = Callable[[Any], Any]
 
-#: Walls of height 5 by the distance from their middle in widths: nothing to either side, by functions and by powers.
-WALLS: dict[str, Formula] = {
-    "gauss": lambda u: 5.0 * np.exp(-(u**2)),
-    "sech": lambda u: 5.0 / np.cosh(u) ** 2,
-    "root": lambda u: 5.0 * np.exp(1.0 - np.sqrt(1.0 + u**2)),
-    "product": lambda u: 5.0 / (1.0 + u**2) / (1.0 + u**2),
-    "raised": lambda u: 5.0 * (1.0 / (1.0 + u**2)) ** 4,
-    "cube": lambda u: 5.0 * (1.0 + u**2) ** -1.5,
-    "sixth power": lambda u: 5.0 / (1.0 + u**6),
-    "eighth power": lambda u: 5.0 / (1.0 + u**8),
-    "twelfth power": lambda u: 5.0 / (1.0 + u**12),
+#: Walls of height 5 by the distance from their middle in widths, in functions of NumPy or of SymPy: nothing to either
+#: side, by functions and by powers.
+WALLS: dict[str, Callable[[Any, Any], Any]] = {
+    "gauss": lambda of, u: 5 * of.exp(-(u**2)),
+    "sech": lambda of, u: 5 / of.cosh(u) ** 2,
+    "root": lambda of, u: 5 * of.exp(1 - of.sqrt(1 + u**2)),
+    "product": lambda of, u: 5 / (1 + u**2) / (1 + u**2),
+    "raised": lambda of, u: 5 * (1 / (1 + u**2)) ** 4,
+    "cube": lambda of, u: 5 / of.sqrt(1 + u**2) ** 3,
+    "sixth power": lambda of, u: 5 / (1 + u**6),
+    "eighth power": lambda of, u: 5 / (1 + u**8),
+    "twelfth power": lambda of, u: 5 / (1 + u**12),
 }
 WIDTHS = (0.1, 3e-3, 1e-3, 1e-4, 1e-5)
 BODY = vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
 
 
 def wall(name: str, width: float) -> vv.ExpressionForce:
-    return vv.ExpressionForce(potential=lambda r, v, t: WALLS[name]((r[0] - PLACE) / width))
+    return vv.ExpressionForce(potential=lambda r, v, t: WALLS[name](np, (r[0] - PLACE) / width))
+
+
+def back(name: str, width: float, place: float) -> float:
+    """The velocity of a body on its way back, by its energy: powers are not quite nothing 40 away from their middle."""
+    with np.errstate(over="ignore"):  # of a cosh that divides
+        begun, there = (WALLS[name](np, (x - PLACE) / width) for x in (0.0, place))
+    return -float(np.sqrt(1.0 + 2.0 * (begun - there)))
 
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "verner98", "tsitouras54", "taylor"])
@@ -45,9 +53,11 @@ def test_a_body_turns_back_at_a_wall_however_thin(name: str, method: str) -> Non
         pytest.skip("cosh(57/width)² is beyond float64, and ends its series by name")
     for width in WIDTHS:
         out = vv.Scene(BODY, wall(name, width)).run(t=100.0, method=method, rtol=1e-8)
-        # Of the tolerance, at two hundred steps; and it comes back as late as it came, but for some widths.
-        assert out.velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-5), width
-        assert out.position[-1, 0, 0] == pytest.approx(2.0 * PLACE - 100.0, rel=0.0, abs=8.0 * width + 1e-3)
+        place, velocity = out.position[-1, 0, 0], out.velocity[-1, 0, 0]
+        # Of the tolerance of each of two hundred steps, of which some tens turn the body.
+        assert velocity == pytest.approx(back(name, width, place), rel=0.0, abs=4e-8), width
+        # It comes back as late as it came, but for the time that it spends where the wall is, of some widths.
+        assert place == pytest.approx(2.0 * PLACE - 100.0, rel=0.0, abs=8.0 * width)
 
 
 @pytest.mark.parametrize("name", WALLS)
@@ -55,26 +65,23 @@ def test_a_body_turns_back_at_a_wall_however_thin(name: str, method: str) -> Non
 def test_so_do_systems_in_generalized_coordinates(name: str, width: float) -> None:
     q, t = vv.coordinate("q"), vv.time
     x, p = sympy.symbols("x p")
-    formulas: dict[str, Formula] = {
-        "gauss": lambda u: 5 * sympy.exp(-(u**2)),
-        "sech": lambda u: 5 / sympy.cosh(u) ** 2,
-        "root": lambda u: 5 * sympy.exp(1 - sympy.sqrt(1 + u**2)),
-        "product": lambda u: 5 / (1 + u**2) / (1 + u**2),
-        "raised": lambda u: 5 * (1 / (1 + u**2)) ** 4,
-        "cube": lambda u: 5 * (1 + u**2) ** sympy.Rational(-3, 2),
-        "sixth power": lambda u: 5 / (1 + u**6),
-        "eighth power": lambda u: 5 / (1 + u**8),
-        "twelfth power": lambda u: 5 / (1 + u**12),
-    }
-    potential = formulas[name]
+
+    def potential(u: Any) -> Any:
+        return WALLS[name](sympy, u)
+
     kinetic = q.diff(t) ** 2 / 2
     lagrangian = vv.Lagrangian(kinetic - potential((q - PLACE) / width), [q], position=[0.0], velocity=[1.0])
     hamiltonian = vv.Hamiltonian(
         p**2 / 2 + potential((x - PLACE) / width), q=[x], p=[p], position=[0.0], momentum=[1.0]
     )
-    # Of the default tolerance of 1e-12, which a thin wall costs some digits.
-    assert lagrangian.run(100.0).velocity[-1, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
-    assert hamiltonian.run(100.0).momentum[-1, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
+    at = lagrangian.run(100.0)
+    by_momenta = hamiltonian.run(100.0)
+    # Of the default tolerance of 1e-12, and of the rounding of u = 57/width where the wall is as steep as 5/width.
+    allowed = 1e-10 + 4.0 * np.finfo(float).eps * PLACE / width
+    assert at.velocity[-1, 0] == pytest.approx(back(name, width, at.position[-1, 0]), rel=0.0, abs=allowed)
+    assert by_momenta.momentum[-1, 0] == pytest.approx(
+        back(name, width, by_momenta.position[-1, 0]), rel=0.0, abs=allowed
+    )
 
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])
@@ -91,9 +98,9 @@ def test_an_atom_far_away_scatters_however_its_potential_is_written(method: str)
     wanted = vv.scattering.deflect(vv.potentials.LennardJones(1.0, s), energy=0.5, impact_parameter=0.3 * s).angle
     for of in (lambda r: 4.0 * ((s / r) ** 12 - (s / r) ** 6), lambda r: 4.0 * (s**12 / r**12 - s**6 / r**6)):
         velocity = atom(of).run(t=80.0, method=method, rtol=1e-11).velocity[-1, 0]
-        # After some hundred steps, of an angle that amplifies what they are off.
-        assert velocity[0] == pytest.approx(np.cos(wanted), rel=0.0, abs=1e-6)
-        assert abs(velocity[1]) == pytest.approx(abs(np.sin(wanted)), rel=0.0, abs=1e-6)
+        # The tolerance, of an angle that amplifies what steps are off: 4e-10 was seen.
+        assert velocity[0] == pytest.approx(np.cos(wanted), rel=0.0, abs=2e-9)
+        assert abs(velocity[1]) == pytest.approx(abs(np.sin(wanted)), rel=0.0, abs=2e-9)
 
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])
@@ -105,9 +112,9 @@ def test_a_pulse_gives_its_impulse_however_short(width: float, method: str) -> N
     )
     far = vv.Particles([1.0, 1e-3], [[0.0, 0.0, 0.0], [1e6, 0.0, 0.0]])
     out = vv.Scene(far, vv.Gravity(1.0), pulse).run(t=60.0, method=method, rtol=1e-9)
-    # The tolerance, of a velocity that is all there is.
-    assert out.velocity[-1, 1, 2] == pytest.approx(np.sqrt(np.pi), rel=1e-6, abs=0.0)
-    assert abs(out.velocity[-1, 0, 2]) < 1e-9
+    # The tolerance, of a velocity that is all there is; of it the heavier body has what a pull of 1e-12 passes on.
+    assert out.velocity[-1, 1, 2] == pytest.approx(np.sqrt(np.pi), rel=1e-9, abs=0.0)
+    assert abs(out.velocity[-1, 0, 2]) < 1e-15
 
 
 @pytest.mark.parametrize("method", ["dop853", "verner98", "taylor"])
@@ -140,17 +147,20 @@ def test_one_of_many_bodies_turns_back(method: str, gravity: bool) -> None:
     post = vv.ExpressionForce(potential=lambda r, v, t: 5.0 * np.exp(-(((r[0] - PLACE) / 1e-4) ** 2) - r[1] ** 2))
     forces: list[vv.forces.Force] = [post, vv.Gravity(1e-12)] if gravity else [post]
     out = vv.Scene(vv.Particles(np.ones(12), position, velocity), *forces).run(t=100.0, method=method, rtol=1e-8)
-    assert out.velocity[-1, 7, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-5)
+    # The tolerance of some tens of steps.
+    assert out.velocity[-1, 7, 0] == pytest.approx(-1.0, rel=0.0, abs=4e-8)
+    # G Σm/r² t of neighbors that are farther than 1 from each other.
     others = np.delete(out.velocity[-1], 7, axis=0)
-    assert np.abs(others).max() < 1e-6
+    assert np.abs(others).max() < (1e-12 * 12.0 * 100.0 if gravity else 1e-15)
 
 
 def test_walls_go_along_with_a_scene_that_is_rescaled_and_stand_there_backward_in_time() -> None:
     scene = vv.Scene(BODY, wall("gauss", 1e-4))
+    # Each to the default tolerance of 1e-9, of some tens of steps.
     there = scene.run(t=-30.0).final.run(t=100.0)
-    assert there.velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
+    assert there.velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=4e-8)
     other = scene.rescaled(length=2.0**-20, mass=8.0, time=2.0**7)
     out = other.run(t=100.0 * 2.0**7)
-    assert out.velocity[-1, 0, 0] * 2.0**27 == pytest.approx(-1.0, rel=0.0, abs=1e-6)
+    assert out.velocity[-1, 0, 0] * 2.0**27 == pytest.approx(-1.0, rel=0.0, abs=4e-8)
     behind = vv.Scene(vv.Particles([1.0], [[100.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]), wall("gauss", 1e-4))
-    assert behind.run(t=-100.0).velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=1e-6)
+    assert behind.run(t=-100.0).velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=4e-8)

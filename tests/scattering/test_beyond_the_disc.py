@@ -164,6 +164,15 @@ def test_of_a_gaussian_the_slowest_is_six_deviations_down() -> None:
     assert (greatest <= low <= 1.05 * greatest, high) == (True, np.pi)
 
 
+def test_of_a_spread_that_has_no_tables_orbits_beyond_the_disc_are_known() -> None:
+    """Every energy of this one orbits, beyond b = 1.9: by direct quadrature, and to any angle."""
+    atom = vv.potentials.LennardJones(1.0, 1.0)
+    of: dict[str, Any] = {"beam_energy": 0.5, "masses": (1.0, 1e6), "b_max": 1.9, "n_events": 100, "seed": 1}
+    beam = vv.scattering.monte_carlo(atom, energy_spread=0.02, **of).beam
+    assert beam.tables == ()
+    assert beyond(beam) == {0.5: np.pi}
+
+
 def test_what_earlier_versions_counted_goes_on() -> None:
     """The smallest angle follows from the rest of a beam: one that was told otherwise is no other beam."""
     from dataclasses import replace

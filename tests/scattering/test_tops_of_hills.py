@@ -81,7 +81,7 @@ def test_at_the_top_angles_fall_from_a_limit(hill: P.Potential) -> None:
     assert S.rainbows(hill, energy=1.0) == ()
     assert S.glories(hill, energy=1.0) == ()
     limit = np.pi / (3.0 if any(hill is cone for cone in CONES.values()) else 2.0)
-    # Within an impact parameter of 1e-12 rounding of V may turn them by more than that.
+    # Within an impact parameter of 1e-12 rounding of V may turn them by more than that: an area of some 1e-24.
     within, beyond, more = S.cross_section(hill, energy=1.0, angle=[0.9 * limit, 1.01 * limit, 2.0])
     assert within > 0.0
     assert beyond == pytest.approx(0.0, abs=1e-20)
