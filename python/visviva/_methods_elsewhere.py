@@ -33,6 +33,14 @@ OF_OTHERS = {
 
 
 def refuse_of_others(name: str, value: str, *, stiff: str = _STIFF) -> None:
-    """Refuse a method of another package with what does here what it is for; `stiff` of implicit ones."""
+    """Refuse a method of another package with what does here what it is for; `stiff` of implicit ones.
+
+    Of any other name it says nothing.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument.
+    """
     if (cure := OF_OTHERS.get(value.lower().replace("-", "_").replace(" ", "_"))) is not None:
         raise InvalidInput(name, f"{value} is none of visviva.methods(); {stiff if cure is _STIFF else cure}")

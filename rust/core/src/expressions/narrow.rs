@@ -11,9 +11,9 @@ use super::graph::{Dependence, Graph, Id, Node};
 /// Polynomials of places, velocities and times up to this degree have no narrow crests.
 const STEEPEST: f64 = 4.0;
 
-/// What falls with a power of places and times that is lower than this tells of itself from afar; a product of several that fall
-/// as this does not.
-const FALLS_SLOWLY: f64 = 2.0;
+/// What falls with a lower power of places and times than this tells of itself from afar; a product of several that fall as this
+/// does not.
+const STEEP_FALL: f64 = 2.0;
 /// The highest power that is told apart.
 const HIGHEST: f64 = 64.0;
 
@@ -58,7 +58,7 @@ pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
             Kind::Call(Function::Sin | Function::Cos) => changes == Dependence::Time,
             Kind::Call(_) => false,
             Kind::Divided(exponent) => {
-                changes > Dependence::Parameters && exponent * growth[argument as usize] >= FALLS_SLOWLY
+                changes > Dependence::Parameters && exponent * growth[argument as usize] >= STEEP_FALL
             }
         };
         may.then_some(Narrow { kind, node, argument })

@@ -110,6 +110,8 @@ impl Structure<'_> {
         }
         NOISE / self.deflector.steepness(self.energy, sample.b, sample.closest_approach).abs()
     }
+
+    /// Whether a sample tells more of ψ than rounding.
     fn is_told(&self, sample: &Sample) -> bool {
         sample.angle.is_finite() && sample.derivative.is_finite() && self.noise(sample) < MOST_NOISE
     }

@@ -193,9 +193,12 @@ impl Mixture {
 /// An event that came.
 #[derive(Debug)]
 pub(super) struct Met<'a> {
+    /// Which beam of the mixture it is of, and that one.
     pub(super) component: usize,
     pub(super) beam: &'a Beam,
+    /// How it arrived.
     pub(super) arrival: Arrival,
+    /// ψ, where it was found by itself; none where a table has it, or if it was captured.
     pub(super) angle: Option<f64>,
 }
 

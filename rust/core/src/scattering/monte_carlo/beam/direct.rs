@@ -47,6 +47,7 @@ impl Direct {
         let _ = deflector.deflect(&energies, &b, false, threads, ticker)?;
         Ok(Self { deflector: Arc::new(deflector), b_max })
     }
+
     /// ψ of energies of relative motion and parts of the disc's radius; nothing if captured.
     ///
     /// # Errors
