@@ -137,7 +137,7 @@ def test_what_cannot_be_sent_is_refused_by_name() -> None:
     nobody = Odd(-1000, ValueError())
     for how, told in (
         ({"executor": "two"}, r"^executor: expected a concurrent\.futures\.Executor"),
-        ({"events": vv.events.function(lambda q, v, t: q[0])}, "^executor: events that are functions of your own"),
+        ({"events": vv.events.function(lambda t, q, v: q[0])}, "^executor: events that are functions of your own"),
         ({"threads": 0}, "^threads: "),
         ({"method": "taylr"}, "^method: "),
     ):
