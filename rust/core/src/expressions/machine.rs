@@ -128,8 +128,24 @@ impl<const K: usize> Blocks<K> {
         execute::blocks::<K>(&self.code, Part::Body, &mut self.registers);
     }
 
+    /// Runs the body at states and times of each block, by register (the last is the time) and block.
+    pub fn run_apart(&mut self, number: impl Fn(usize, usize) -> Lanes) {
+        let count = self.code.variables() + 1;
+        for (register, blocks) in self.registers.chunks_mut(K).take(count).enumerate() {
+            for (block, room) in blocks.iter_mut().enumerate() {
+                *room = number(register, block);
+            }
+        }
+        execute::blocks::<K>(&self.code, Part::Body, &mut self.registers);
+    }
+
     /// A result of the first block.
     pub fn output(&self, index: usize) -> Lanes {
-        self.registers[usize::from(self.code.outputs[index]) * K]
+        self.output_of(index, 0)
+    }
+
+    /// A result of a block.
+    pub fn output_of(&self, index: usize, block: usize) -> Lanes {
+        self.registers[usize::from(self.code.outputs[index]) * K + block]
     }
 }

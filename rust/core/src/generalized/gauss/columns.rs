@@ -41,6 +41,10 @@ pub(super) struct Columns {
     moved: Vec<Lanes>,
     /// What a number is measured by, inverted.
     pub(super) scales: Vec<Lanes>,
+    /// The same of its changes: noise is no change.
+    measures: Vec<Lanes>,
+    /// How noisy rates are, where that was asked for.
+    pub(super) noise: Vec<Lanes>,
     /// How large numbers were and how far they went, lately.
     pub(super) sizes: Vec<Lanes>,
     /// The same with the steps that are tried.
@@ -60,6 +64,8 @@ impl Columns {
             drifts: rows,
             moved: row.clone(),
             scales: row.clone(),
+            measures: row.clone(),
+            noise: row.clone(),
             sizes: row.clone(),
             tried: row.clone(),
             least: row,
@@ -83,6 +89,8 @@ impl Columns {
 pub(super) struct Settled {
     pub(super) converged: Bits,
     pub(super) evaluations: [u32; WIDTH],
+    /// By what the last one changed the stages, as parts of sizes.
+    pub(super) change: Lanes,
 }
 
 /// Steps on their way.
@@ -155,7 +163,7 @@ fn unfelt<V: Vector8>(form: Form, y: &[Lanes], i: usize, h: V) -> V {
     }
 }
 
-/// Sets what changes are measured by, in the lanes that run.
+/// Sets what changes are measured by, in the lanes that run, as of one trajectory.
 #[inline(always)]
 fn set_scales<V: Vector8>(
     columns: &mut Columns,
@@ -176,7 +184,12 @@ fn set_scales<V: Vector8>(
     let least = V::splat(LEAST_SCALE) * most;
     for i in 0..columns.tried.len() {
         let size = V::load(columns.tried[i]).max(least);
-        columns.scales[i] = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
+        let scale = V::select(V::zero().less(size), V::one() / size, V::zero());
+        columns.scales[i] = V::select(running, scale, V::load(columns.scales[i])).store();
+        let noise = V::load(columns.noise[i]);
+        let cap = V::splat(f64::EPSILON) / (noise * h.abs());
+        let cap = V::select(V::zero().less(noise), cap, V::splat(f64::INFINITY));
+        columns.measures[i] = V::load(columns.scales[i]).min(cap).store();
     }
 }
 
@@ -236,7 +249,11 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
     if second_order {
         drift(work, h, count);
     }
-    let mut settled = Settled { converged: Bits::splat(false), evaluations: [MOST_ITERATIONS; WIDTH] };
+    let mut settled = Settled {
+        converged: Bits::splat(false),
+        evaluations: [MOST_ITERATIONS; WIDTH],
+        change: Lanes([f64::INFINITY; WIDTH]),
+    };
     let mut changes = [Changes::default(); WIDTH];
     let mut limit = Lanes::splat(f64::INFINITY);
     let mut active = running;
@@ -284,7 +301,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         }
         let mut most = V::zero();
         for i in 0..evaluated {
-            let scale = V::load(columns.scales[i]).min(V::load(limit)) * h.abs();
+            let scale = V::load(columns.measures[i]).min(V::load(limit)) * h.abs();
             most = larger(V::load(columns.moved[i]) * scale, most);
         }
         let most = most.store();
@@ -294,7 +311,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
             limit.0[lane] = changes[lane].limit;
             if let Some(converged) = judged {
                 let lane_alone = Bits(1 << lane);
-                settled.evaluations[lane] = iteration;
+                (settled.evaluations[lane], settled.change.0[lane]) = (iteration, most.0[lane]);
                 active = active.and(lane_alone.not());
                 settled.converged =
                     if converged { settled.converged.or(lane_alone) } else { settled.converged };
@@ -350,6 +367,7 @@ pub(super) fn found(work: &mut Work<'_>) -> Settled {
         all.converged = all.converged.and(wild.not().or(again.converged));
         for lane in (0..WIDTH).filter(|&lane| wild.lane(lane)) {
             all.evaluations[lane] += again.evaluations[lane];
+            all.change.0[lane] = again.change.0[lane];
         }
     }
     all.converged = all.converged.and(began_wildly(work).not());

@@ -3,9 +3,9 @@
 //! The one idea: a lane that starts, is refused or ends is a bit of a mask; whatever is decided of its step, its own [`Pace`]
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
+mod beside_noise;
 mod judged;
 
-use super::columns::found;
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
 use super::columns_end::advance;
 use super::pace::{Pace, Steps, first_step};
@@ -26,6 +26,7 @@ use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
 use crate::ode::system::{Form, System};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
+use beside_noise::found_beside_noise;
 use std::sync::Arc;
 
 /// A collocation method at work on eight trajectories.
@@ -216,21 +217,28 @@ impl Trial<Lanes> for GaussEight {
         let planned = clock.h;
         self.guess(h, running);
         let t = Lanes::splat(self.t0) + clock.elapsed;
-        let fading =
-            Lanes(core::array::from_fn(|lane| self.paces[lane].fading(self.length.0[lane], h.0[lane])));
-        let Self { table, form, velocity, machine, columns, .. } = self;
-        let (table, form, velocity) = (*table, *form, *velocity);
-        let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running };
-        let iterated = found(&mut work);
-        advance(&work, &mut self.next);
+        let (iterated, known) = self.iterated((t, h), state, running);
         self.count(&iterated, running);
         let smoothness = self.smoothness(h, running);
+        for (lane, pace) in self.paces.iter_mut().enumerate().filter(|(lane, _)| running.lane(*lane)) {
+            pace.converged = iterated.converged.lane(lane);
+            pace.delta = if pace.converged { smoothness.0[lane] } else { f64::INFINITY };
+        }
+        let asked = running.and(known.not());
+        let noisy = self.lanes(|lane, pace| {
+            asked.lane(lane) && pace.may_be_noise(self.steps, || self.most_noise(lane, state, h))
+        });
+        if noisy.any() {
+            self.look_for_noise(t, state, noisy);
+            let smoothness = self.smoothness(h, running);
+            for lane in (0..WIDTH).filter(|&lane| noisy.lane(lane)) {
+                self.paces[lane].takes_beside_noise(smoothness.0[lane]);
+            }
+        }
         let felt = felt(self.form, self.table.stages, &self.columns, h);
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
-            let (pace, converged) = (&mut self.paces[lane], iterated.converged.lane(lane));
-            pace.converged = converged;
-            pace.delta = if converged { smoothness.0[lane] } else { f64::INFINITY };
-            pace.felt = if converged { felt.0[lane] } else { f64::INFINITY };
+            let pace = &mut self.paces[lane];
+            pace.felt = if pace.converged { felt.0[lane] } else { f64::INFINITY };
         }
         let missed = self.missed(t + h, h, running);
         let mut errors = Lanes::zero();
@@ -288,13 +296,16 @@ impl Trial<Lanes> for GaussEight {
     ) -> Result<()> {
         let asked = Lanes::zero().less(theta);
         let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
-        led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.rates);
+        led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.guess);
+        self.shadow.rates.copy_from_slice(&self.shadow.guess);
         self.shadow.sizes.copy_from_slice(&self.columns.tried);
+        self.shadow.noise.copy_from_slice(&self.columns.noise);
+        let noisy = self.lanes(|_, pace| pace.noisy);
         let (t, h, fading) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta, Lanes::one());
         let Self { table, form, velocity, machine, shadow: columns, .. } = self;
         let (table, form, velocity) = (*table, *form, *velocity);
         let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running: asked };
-        let iterated = found(&mut work);
+        let (iterated, _) = found_beside_noise(&mut work, noisy);
         advance(&work, into);
         self.count(&iterated, asked);
         for lane in (0..WIDTH).filter(|&lane| asked.and(iterated.converged.not()).lane(lane)) {

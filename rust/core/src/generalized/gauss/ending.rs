@@ -23,6 +23,8 @@ pub(super) struct Ending {
     pub(super) weights: [Lanes; WIDTH],
     /// And at the beginning, which of the first step of a run no step before it has looked at.
     pub(super) first: [Lanes; WIDTH],
+    /// By so many times the noise of rates these may miss each other.
+    pub(super) noise: f64,
     /// Of what a polynomial leads astray in the next step, the most by which it errs at the end of its own where motions are smooth.
     share: f64,
 }
@@ -34,8 +36,11 @@ impl Ending {
         let product = |x: f64| nodes.iter().map(|c| x - c).product::<f64>();
         let farthest = 1.0 + nodes[table.stages - 1];
         let later_terms = (0..table.stages).fold(1.0, |product, _| product * SMOOTH);
+        let weights = table.at(&Lanes([1.0; WIDTH]));
         Self {
-            weights: table.at(&Lanes([1.0; WIDTH])),
+            noise: weights.iter().fold(1.0, |sum, weight| sum + weight.0[0].abs()),
+            weights,
+            // Of as much noise: nodes are symmetric.
             first: table.at(&Lanes([0.0; WIDTH])),
             share: later_terms * product(1.0) / product(farthest),
         }

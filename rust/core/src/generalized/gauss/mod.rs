@@ -3,7 +3,8 @@
 //! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
 //! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
 //! in the next one; where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
-//! by what will push it ([`rest`]), and rounding by nothing ([`rounding`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
+//! by what will push it ([`rest`]), and rounding by nothing
+//! ([`rounding`], [`noise`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
 //! alone.
 
 mod changes;
@@ -11,6 +12,7 @@ mod columns;
 mod columns_end;
 mod eight;
 mod ending;
+mod noise;
 mod pace;
 mod rest;
 mod rounding;

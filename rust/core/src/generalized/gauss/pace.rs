@@ -23,6 +23,8 @@ const NOT_FOLLOWED: f64 = 0.2;
 const FOLLOWED: f64 = 0.1;
 /// What is left of a δ a step later.
 const LATELY: f64 = 0.8;
+/// Steps get much shorter by a δ so many times as large as it should be.
+const MUCH_SHORTER: f64 = 4.0;
 /// Steps change where they would change by more than from here …
 const SHORTER: f64 = 0.85;
 /// … to here.
@@ -70,6 +72,8 @@ pub(super) struct Pace {
     pub(super) felt: f64,
     /// The longest step that feels nothing.
     pub(super) longest_free: f64,
+    /// Whether noise of rates was found in a step that was in trouble.
+    pub(super) noisy: bool,
     /// δ of the steps before it that were kept, the older the less.
     lately: f64,
     /// Whether steps have come to a length that the motion tells, and whether that has been held.
@@ -105,6 +109,17 @@ impl Pace {
     /// Whether δ is out of the band.
     fn strays(&self, target: f64, band: f64) -> bool {
         self.delta > Real::min(band * target, NOT_FOLLOWED)
+    }
+
+    /// Whether steps after this one are to be much shorter, or it is taken again: more than `most` of δ is no noise.
+    pub(super) fn may_be_noise(&self, steps: Steps, most: impl FnOnce() -> f64) -> bool {
+        matches!(steps, Steps::Chosen { delta, .. } if self.delta > MUCH_SHORTER * delta && self.delta < most())
+    }
+
+    /// Takes δ anew, beside noise, and remembers whether that was most of it.
+    pub(super) fn takes_beside_noise(&mut self, delta: f64) {
+        self.noisy = delta < 0.5 * self.delta;
+        self.delta = delta;
     }
 
     /// What is left of the sizes of numbers in a step of length `h` after a kept one of length `last`.

@@ -8,7 +8,7 @@
 use super::Table;
 
 /// By what rates are rounded, as a part of the largest.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// What has less than this part of the largest rate hardly moves beside it.
 pub(super) const HARDLY: f64 = 1e-3;
@@ -26,19 +26,19 @@ impl Rounding {
     /// Of a method.
     pub(super) fn of(table: &Table) -> Self {
         let first = table.leading(|k| 1.0_f64.copysign(table.weights.0[k]));
-        Self { first: ROUNDING * first, equal: ROUNDING * amplified(table, 1.0) }
+        Self { first, equal: amplified(table, 1.0) }
     }
 
-    /// So many times the largest rate a stage is led astray by rounding, at most, in a step of length `h` after so many kept
-    /// ones, the last of length `last`.
+    /// So many times what rates are off a stage is led astray by that, at most, in a step of length `h` after so many kept ones,
+    /// the last of length `last`.
     #[inline]
-    pub(super) fn astray(&self, table: &Table, kept: u64, (last, h): (f64, f64)) -> f64 {
+    pub(super) fn amplified(&self, table: &Table, kept: u64, (last, h): (f64, f64)) -> f64 {
         if kept == 0 {
             self.first
         } else if h == last {
             self.equal
         } else {
-            ROUNDING * amplified(table, h / last)
+            amplified(table, h / last)
         }
     }
 }

@@ -8,6 +8,7 @@
 use super::Table;
 use super::changes::Changes;
 use super::columns::larger;
+use super::noise;
 use super::pace::FADING;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
@@ -46,6 +47,10 @@ pub(super) struct Stages {
     pub(super) told: Vec<(f64, f64)>,
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
+    /// The same of its changes: noise is no change.
+    measures: Vec<f64>,
+    /// How noisy rates are, where that was asked for.
+    pub(super) noise: Vec<f64>,
     /// How large numbers were and how far they went, lately.
     pub(super) sizes: Vec<f64>,
     /// The same with the step that is tried.
@@ -63,6 +68,8 @@ impl Stages {
             drifts: row,
             told: vec![(0.0, 0.0); evaluated],
             scales: vec![0.0; evaluated],
+            measures: vec![0.0; evaluated],
+            noise: vec![0.0; evaluated],
             sizes: vec![0.0; evaluated],
             tried: vec![0.0; evaluated],
             least: vec![0.0; evaluated],
@@ -97,6 +104,8 @@ pub(super) fn limit(scales: impl Iterator<Item = f64>) -> f64 {
 pub(super) struct Iterated {
     pub(super) converged: bool,
     pub(super) evaluations: u32,
+    /// By what the last one changed the stages, as a part of sizes.
+    pub(super) change: f64,
 }
 
 /// A step on its way.
@@ -177,6 +186,7 @@ fn set_scales<V: Vector8>(
         let size = stages.tried[i];
         let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
         stages.scales[i] = if size > 0.0 { 1.0 / size } else { 0.0 };
+        stages.measures[i] = Real::min(stages.scales[i], noise::cap(stages.noise[i], h));
     }
 }
 
@@ -231,17 +241,17 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
         let own = own_lanes(table.stages);
         for i in 0..evaluated {
             let found = V::load(registers[usize::from(outputs[i])]);
-            let scale = V::splat(Real::min(stages.scales[i], changes.limit) * length);
+            let scale = V::splat(Real::min(stages.measures[i], changes.limit) * length);
             let moved = V::select(own, (found - V::load(stages.rates[i])).abs(), V::zero());
             change = larger(moved * scale, change);
             stages.rates[i] = found.store();
         }
         let change = largest(change.store());
         if let Some(converged) = changes.judged(change, || stages.limit()) {
-            return Iterated { converged, evaluations: iteration };
+            return Iterated { converged, evaluations: iteration, change };
         }
     }
-    Iterated { converged: false, evaluations: MOST_ITERATIONS }
+    Iterated { converged: false, evaluations: MOST_ITERATIONS, change: f64::INFINITY }
 }
 
 /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep wall,
@@ -269,7 +279,7 @@ pub(super) fn found(work: &mut Work<'_>) -> Iterated {
             return all;
         }
         let again = iterate(work);
-        all = Iterated { converged: again.converged, evaluations: all.evaluations + again.evaluations };
+        all = Iterated { evaluations: all.evaluations + again.evaluations, ..again };
     }
     all.converged &= !began_wildly(work);
     all

@@ -5,7 +5,7 @@
 
 use super::Table;
 use super::columns::{Columns, NOTHING, Row, combined, larger};
-use super::rounding::HARDLY;
+use super::rounding::{HARDLY, ROUNDING};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Mask;
 use crate::ode::system::Form;
@@ -52,12 +52,13 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
 }
 
 /// How far the polynomials of the steps before lead astray, as parts of sizes; in the first steps of these lanes, how much
-/// their last terms add. What rounding explains, which is so many times the largest rate, is nothing.
+/// their last terms add. What rounding explains, which is so many times the largest rate, is nothing, as is what noise does, so many
+/// times which leads them astray.
 #[inline(always)]
 fn smoothness_body<V: Vector8>(
     table: &Table,
     columns: &Columns,
-    (rounding, h): (Lanes, Lanes),
+    (amplified, h): (Lanes, Lanes),
     first: Bits,
 ) -> Lanes {
     let stages = table.stages;
@@ -65,9 +66,11 @@ fn smoothness_body<V: Vector8>(
     for row in &columns.rates {
         largest = V::load(astray_body::<V>(row, &NOTHING, stages)).max(largest);
     }
-    let (rounding, hardly) = (V::load(rounding) * largest, largest * V::splat(HARDLY));
+    let amplified = V::load(amplified);
+    let (rounding, hardly) = (V::splat(ROUNDING) * amplified * largest, largest * V::splat(HARDLY));
     let mut most = V::zero();
-    for ((row, guess), &scale) in columns.rates.iter().zip(&columns.guess).zip(&columns.scales) {
+    let rows = columns.rates.iter().zip(&columns.guess).zip(&columns.scales).zip(&columns.noise);
+    for (((row, guess), &scale), &noise) in rows {
         let mut away = astray_body::<V>(row, guess, stages);
         for lane in 0..WIDTH {
             if first.lane(lane) {
@@ -77,6 +80,7 @@ fn smoothness_body<V: Vector8>(
         let away = V::load(away);
         let hardly_moves = V::load(astray_body::<V>(row, &NOTHING, stages)).less_equal(hardly);
         let away = V::select(away.less_equal(rounding).and(hardly_moves), V::zero(), away);
+        let away = (away - amplified * V::load(noise)).max(V::zero());
         most = (away * V::load(h).abs() * V::load(scale)).max(most);
     }
     most.store()
@@ -107,10 +111,11 @@ fn felt_body<V: Vector8>(form: Form, stages: usize, columns: &Columns, h: Lanes)
     if second_order { most.store() } else { Lanes(most.store().0.map(f64::sqrt)) }
 }
 
-/// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes.
+/// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes; so many times
+/// their noise is nothing.
 #[inline(always)]
 fn missed_body<V: Vector8>(
-    weights: &[Lanes; WIDTH],
+    (weights, noise): (&[Lanes; WIDTH], f64),
     stages: usize,
     columns: &Columns,
     found: &[Lanes],
@@ -118,10 +123,14 @@ fn missed_body<V: Vector8>(
 ) -> Lanes {
     let mut most = V::zero();
     let limit = Lanes(core::array::from_fn(|lane| columns.limit(lane)));
-    for ((row, &found), &scale) in columns.rates.iter().zip(found).zip(&columns.scales) {
+    let rows = columns.rates.iter().zip(found).zip(&columns.scales).zip(&columns.noise);
+    for (((row, &found), &scale), &own) in rows {
         let led = combined!(stages, row, j => V::load(weights[j]));
         let scale = V::load(scale).min(V::load(limit));
-        most = larger((V::load(found) - led).abs() * V::load(h).abs() * scale, most);
+        let away = (V::load(found) - led).abs();
+        let by_noise = V::splat(noise) * V::load(own);
+        let away = V::select(away.less(by_noise), V::zero(), away - by_noise);
+        most = larger(away * V::load(h).abs() * scale, most);
     }
     most.store()
 }
@@ -131,6 +140,6 @@ tiered! {
     pub(super) fn kept[][](rates: &[Row], kept: Bits, before: &mut [Row]) -> () = kept_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
-    pub(super) fn missed[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
+    pub(super) fn missed[][](weights: (&[Lanes; WIDTH], f64), stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
     pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
 }

@@ -4,10 +4,11 @@
 //! The one idea: whatever is decided of a step, its [`Pace`] decides, which eight trajectories side by side
 //! ([`eight`](super::eight)) have, too.
 
+use super::noise::{self, found_beside_noise};
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
-use super::rounding::HARDLY;
-use super::step::{Iterated, Stages, Work, advance, found, largest, led, told};
+use super::rounding::{HARDLY, ROUNDING};
+use super::step::{Iterated, Stages, Work, advance, largest, led, told};
 use super::{Beyond, Method, Table};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
@@ -115,34 +116,55 @@ impl GaussStep {
         self.stages.rates.copy_from_slice(&self.stages.guess);
     }
 
-    fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> Iterated {
+    /// Iterates the stages, beside noise if that is known or holds them up; whether it is known then.
+    fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> (Iterated, bool) {
+        let noisy = self.pace.noisy;
+        if noisy {
+            self.look_for_noise(t, state);
+        } else {
+            self.stages.noise.fill(0.0);
+        }
         let fading = self.pace.fading(self.length, h);
         let Self { table, form, velocity, machine, stages, .. } = self;
         let (table, form, velocity) = (*table, *form, *velocity);
         let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading };
-        let iterated = found(&mut work);
+        let (iterated, known) = found_beside_noise(&mut work, noisy);
         if iterated.converged {
             advance(&work, &mut self.next);
             told(stages, table.stages);
         }
         self.evaluations += u64::from(iterated.evaluations);
-        iterated
+        self.pace.noisy = noisy || (known && iterated.converged);
+        (iterated, known)
     }
 
-    /// How far the polynomial of the step before leads astray; in the first step, how much its last term adds. What rounding
-    /// explains is nothing.
+    fn look_for_noise(&mut self, t: f64, state: &State<f64>) {
+        noise::of_one(&mut self.machine, t, state.all().0, &mut self.stages.noise);
+        self.evaluations += 1;
+    }
+
+    /// The most that noise leads a step astray, as a part of a size.
+    fn most_noise(&self, state: &State<f64>, h: f64) -> f64 {
+        let largest = state.all().0.iter().fold(0.0, |most, y| Real::max(y.abs(), most));
+        let scale = self.stages.scales.iter().fold(0.0, |most, &scale| Real::max(scale, most));
+        let amplified = self.beyond.rounding.amplified(self.table, self.pace.kept, (self.length, h));
+        noise::most(largest, (self.form, h)) * amplified * h.abs() * scale
+    }
+
+    /// How far the polynomial of the step before leads astray; in the first step, how much its last term adds. What rounding and
+    /// noise explain is nothing.
     fn smoothness(&self, h: f64) -> f64 {
         let largest_rate = self.stages.told.iter().fold(0.0, |most, told| Real::max(told.0, most));
-        let rounding =
-            self.beyond.rounding.astray(self.table, self.pace.kept, (self.length, h)) * largest_rate;
+        let amplified = self.beyond.rounding.amplified(self.table, self.pace.kept, (self.length, h));
+        let rounding = ROUNDING * amplified * largest_rate;
         let mut most = 0.0;
-        let Stages { told, rates, scales, .. } = &self.stages;
+        let Stages { told, rates, scales, noise, .. } = &self.stages;
         for i in 0..told.len() {
             let (largest, astray) = told[i];
             let astray = if self.pace.kept == 0 { self.table.leading(|k| rates[i].0[k]) } else { astray };
             let hardly_moves = largest <= HARDLY * largest_rate;
             let astray = if hardly_moves && astray <= rounding { 0.0 } else { astray };
-            let delta = astray * h.abs() * scales[i];
+            let delta = Real::max(astray - amplified * noise[i], 0.0) * h.abs() * scales[i];
             most = if delta > most { delta } else { most };
         }
         most
@@ -206,26 +228,30 @@ impl GaussStep {
     /// By how much the rates at the end of the step, and at the beginning of the first, are not those that the stages lead to,
     /// as a part of a size.
     fn missed(&mut self, t: f64, h: f64) -> f64 {
-        led(&self.beyond.ending.weights, &self.stages.rates, &mut self.led);
-        let end = self.next.all().0;
-        for (register, &y) in self.machine.state().iter_mut().zip(end) {
+        let Self { beyond, machine, stages, led: there, begin, next, pace, .. } = self;
+        led(&beyond.ending.weights, &stages.rates, there);
+        for (register, &y) in machine.state().iter_mut().zip(next.all().0) {
             *register = Lanes([y; WIDTH]);
         }
-        self.machine.run(Lanes([t; WIDTH]));
+        machine.run(Lanes([t; WIDTH]));
         self.evaluations += 1;
+        let limit = stages.limit();
+        let part = |away: f64, i: usize| {
+            let by_noise = beyond.ending.noise * stages.noise[i];
+            let away = if away.abs() < by_noise { 0.0 } else { away.abs() - by_noise };
+            away * h.abs() * Real::min(stages.scales[i], limit)
+        };
         let mut most = 0.0;
-        let limit = self.stages.limit();
-        let scale = |stages: &Stages, i: usize| Real::min(stages.scales[i], limit);
-        for (i, led) in self.led.iter().enumerate() {
-            let missed = (self.machine.output(i).0[0] - led.0[0]).abs() * h.abs() * scale(&self.stages, i);
+        for (i, led) in there.iter().enumerate() {
+            let missed = part(machine.output(i).0[0] - led.0[0], i);
             most = if missed <= most { most } else { missed };
         }
-        if self.pace.kept > 0 {
+        if pace.kept > 0 {
             return most;
         }
-        led(&self.beyond.ending.first, &self.stages.rates, &mut self.led);
-        for (i, (led, begin)) in self.led.iter().zip(&self.begin).enumerate() {
-            let missed = (begin - led.0[0]).abs() * h.abs() * scale(&self.stages, i);
+        led(&beyond.ending.first, &stages.rates, there);
+        for (i, (led, begin)) in there.iter().zip(begin.iter()).enumerate() {
+            let missed = part(begin - led.0[0], i);
             most = if missed <= most { most } else { missed };
         }
         most
@@ -279,9 +305,13 @@ impl Trial<f64> for GaussStep {
         let planned = clock.h;
         self.guess(h);
         let t = self.t0 + clock.elapsed;
-        let iterated = self.iterated(t, h, state);
+        let (iterated, known) = self.iterated(t, h, state);
         self.pace.converged = iterated.converged;
         self.pace.delta = if iterated.converged { self.smoothness(h) } else { f64::INFINITY };
+        if !known && self.pace.may_be_noise(self.steps, || self.most_noise(state, h)) {
+            self.look_for_noise(t, state);
+            self.pace.takes_beside_noise(self.smoothness(h));
+        }
         self.pace.felt = if iterated.converged { self.felt(h) } else { f64::INFINITY };
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
@@ -322,14 +352,16 @@ impl Trial<f64> for GaussStep {
         _: &mut Ticker<'_>,
     ) -> Result<()> {
         let rows = self.table.at(&self.table.c.map(|c| c * theta));
-        led(&rows, &self.stages.rates, &mut self.shadow.rates);
+        led(&rows, &self.stages.rates, &mut self.shadow.guess);
+        self.shadow.rates.copy_from_slice(&self.shadow.guess);
         // Measured by what the step itself is: no reading knows of another.
         self.shadow.sizes.copy_from_slice(&self.stages.tried);
+        self.shadow.noise.copy_from_slice(&self.stages.noise);
         let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
         let Self { table, form, velocity, machine, shadow: stages, .. } = self;
         let (table, form, velocity) = (*table, *form, *velocity);
         let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading: 1.0 };
-        let iterated = found(&mut work);
+        let (iterated, _) = found_beside_noise(&mut work, self.pace.noisy);
         advance(&work, into);
         self.evaluations += u64::from(iterated.evaluations);
         if iterated.converged {

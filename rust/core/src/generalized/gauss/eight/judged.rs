@@ -11,15 +11,20 @@ use crate::ode::system::{System, Taken, Visited};
 
 impl GaussEight {
     /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
-    /// rounding explains is nothing.
+    /// rounding and noise explain is nothing.
     pub(super) fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
-        let mut rounding = Lanes::one();
-        for (lane, pace) in self.paces.iter().enumerate() {
-            let steps = (self.length.0[lane], h.0[lane]);
-            rounding.0[lane] = self.beyond.rounding.astray(self.table, pace.kept, steps);
+        let mut amplified = Lanes::one();
+        for (lane, amplified) in amplified.0.iter_mut().enumerate() {
+            *amplified = self.amplified(lane, h);
         }
         let first = self.lanes(|_, pace| pace.kept == 0).and(running);
-        smoothness(self.table, &self.columns, (rounding, h), first)
+        smoothness(self.table, &self.columns, (amplified, h), first)
+    }
+
+    /// So many times what rates are off a step is led astray in a lane.
+    pub(super) fn amplified(&self, lane: usize, h: Lanes) -> f64 {
+        let steps = (self.length.0[lane], h.0[lane]);
+        self.beyond.rounding.amplified(self.table, self.paces[lane].kept, steps)
     }
 
     /// By how much the rates at the ends of steps are not those that the stages lead to, where that is to be asked.
@@ -35,11 +40,11 @@ impl GaussEight {
         for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
             self.taken[lane] += 1;
         }
-        let stages = self.table.stages;
-        let mut most = missed(&self.beyond.ending.weights, stages, &self.columns, &self.ends, h);
+        let (stages, ending) = (self.table.stages, &self.beyond.ending);
+        let mut most = missed((&ending.weights, ending.noise), stages, &self.columns, &self.ends, h);
         let first = self.lanes(|_, pace| pace.kept == 0).and(asked);
         if first.any() {
-            let begun = missed(&self.beyond.ending.first, stages, &self.columns, &self.begin, h);
+            let begun = missed((&ending.first, ending.noise), stages, &self.columns, &self.begin, h);
             for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
                 let (begun, most) = (begun.0[lane], &mut most.0[lane]);
                 *most = if begun <= *most { *most } else { begun };
