@@ -17,6 +17,8 @@ PLAIN = {
     "quartic": lambda r, v, t: r[0] ** 4 + r[1] ** 2 * r[2] ** 2,
     "waves": lambda r, v, t: np.sin(3.0 * r[0]) * np.cos(r[1]),
     "slow change": lambda r, v, t: (1.0 + t**2) * r[0] ** 2,
+    # Its phase is followed.
+    "drive": lambda r, v, t: r[0] * np.cos(t),
 }
 #: What may be nothing at two neighboring stages, and much between them.
 NARROW = {
@@ -24,7 +26,6 @@ NARROW = {
     "wall": lambda r, v, t: np.tanh(r[0]),
     "corner": lambda r, v, t: abs(r[0]),
     "flat bottom": lambda r, v, t: (abs(r[0]) - r[0]) ** 3,
-    "drive": lambda r, v, t: r[0] * np.cos(t),
     "running wave": lambda r, v, t: np.cos(r[0] - t),
     "steep pulse": lambda r, v, t: r[0] / (1.0 + t**8),
     "gentle pulse": lambda r, v, t: r[0] / (1.0 + t**2),
@@ -51,6 +52,28 @@ def test_what_may_hide_is_looked_for_in_many_steps(name: str) -> None:
     scene = beside(NARROW[name])
     assert "longest step" in str(scene.plan(t=0.5))
     assert scene.run(t=0.5).stats.steps >= 128
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "dop853", "verner98", "tsitouras54"])
+@pytest.mark.parametrize("frequency", [0.3, 7.0, 300.0, 3e3])
+def test_a_drive_that_is_weak_beside_the_rest_is_felt(frequency: float, method: str) -> None:
+    """A fast circle, and a drive across it of a part of a million or less, which no error of a step tells."""
+    amplitude = 1e-6 * frequency
+    drive = vv.ExpressionForce(
+        acceleration=lambda r, v, t, a, w: (0.0, 0.0, a * np.cos(w * t + 0.3)),
+        parameters={"a": amplitude, "w": frequency},
+    )
+    body = vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    out = vv.Scene(body, vv.Harmonic(1.0), drive).run(t=2.0, method=method, rtol=1e-9)
+    # z̈ = −z + a cos(wt + 0.3), from rest.
+    w, t, phase = frequency, 2.0, 0.3
+    gain = amplitude / (1.0 - w * w)
+    free = gain * (np.cos(w * t + phase) - np.cos(phase) * np.cos(t) + w * np.sin(phase) * np.sin(t))
+    # Of the tolerance of each step, which are some thousand at most and do not add up.
+    allowed = 1e-11 * out.stats.steps
+    assert allowed < 0.1 * abs(free)
+    assert out.position[-1, 0, 2] == pytest.approx(free, rel=0.0, abs=allowed)
+    assert out.position[-1, 0, 0] == pytest.approx(np.cos(2.0), rel=0.0, abs=1e-8)
 
 
 def test_two_expressions_of_which_one_may_hide() -> None:

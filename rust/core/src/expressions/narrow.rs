@@ -126,8 +126,8 @@ pub fn is_smooth(graph: &Graph, expressions: &[Id]) -> Vec<bool> {
     expressions.iter().map(|&id| !graph.any(&[id], bends)).collect()
 }
 
-/// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree and waves that stand in
-/// space.
+/// Whether there may be more in these expressions than a step sees: anything but polynomials of low degree, waves that stand in
+/// space, and those of the time alone, which are looked for.
 pub fn may_hide(graph: &Graph, roots: &[Id]) -> bool {
     is_steep(graph, roots, false)
 }
@@ -139,7 +139,7 @@ fn is_steep(graph: &Graph, roots: &[Id], waves_of_time: bool) -> bool {
 }
 
 /// The degree of every node in places, velocities and times; infinite of what is no polynomial of them and of their waves, or
-/// of a wave that the time moves unless those count.
+/// of a wave that the time moves in space unless those count.
 fn degrees(graph: &Graph, waves_of_time: bool) -> Vec<f64> {
     let changes = |id: Id| graph.dependence(id) > Dependence::Parameters;
     let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
@@ -152,7 +152,11 @@ fn degrees(graph: &Graph, waves_of_time: bool) -> Vec<f64> {
             Node::Sum(_, terms) => terms.iter().map(|&(_, id)| of(id)).fold(0.0, f64::max),
             Node::Product(a, b) => of(*a) + of(*b),
             Node::Quotient(a, b) if !changes(*b) => of(*a),
-            Node::Call(Function::Sin | Function::Cos, argument) if waves_of_time || !of_time(*argument) => {
+            Node::Call(Function::Sin | Function::Cos, argument)
+                if waves_of_time
+                    || !of_time(*argument)
+                    || graph.dependence(*argument) == Dependence::Time =>
+            {
                 of(*argument)
             }
             Node::Call(_, argument) | Node::Power(argument, _) if !changes(*argument) => 0.0,
@@ -204,6 +208,8 @@ mod tests {
         assert!(!hides(|graph, x, t| graph.product(&[x, x, t])));
         assert!(!hides(|graph, x, _| graph.power(x, 4.0)));
         assert!(!hides(|graph, x, _| graph.call(Function::Sin, x)));
+        // Drives are looked for.
+        assert!(!hides(|graph, _, t| graph.call(Function::Cos, t)));
         // What does not change is a number.
         assert!(!hides(|graph, x, _| {
             let parameter = graph.parameter(0);
@@ -217,8 +223,7 @@ mod tests {
         for function in [Function::Exp, Function::Tanh, Function::Sqrt, Function::Atan, Function::Ln] {
             assert!(hides(|graph, x, _| graph.call(function, x)));
         }
-        // Drives and running waves, corners and switches, steep powers.
-        assert!(hides(|graph, _, t| graph.call(Function::Cos, t)));
+        // Running waves, corners and switches, steep powers.
         assert!(hides(|graph, x, t| {
             let phase = graph.sum(0.0, &[(1.0, x), (-1.0, t)]);
             graph.call(Function::Cos, phase)

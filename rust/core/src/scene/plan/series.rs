@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// The series of all pairs of more bodies leave the caches, and other methods are faster.
 const MOST_BODIES: usize = 64;
 
-/// The method that `auto` prefers to the one that serves all. It is that of series where few bodies attract each other and
-/// nothing else acts: there it takes about the time of DOP853 and is off by a tenth to a ten thousandth of its errors. Measured
-/// on fourteen scenes of 3 to 8 bodies, massless ones and ensembles among them, with tolerances of 1e-6 to 1e-12: 0.6 to 1.6
-/// times the time; of more bodies up to five times, and with flattening or relativity beside the pulls about twice.
+/// The method that `auto` prefers to the one that serves all. It is that of series where few bodies or charges attract each other
+/// and nothing else acts but fields: there it takes about the time of DOP853 and is off by a tenth to a ten thousandth of its
+/// errors. Measured on fourteen scenes of 3 to 8 bodies, massless ones and ensembles among them, with tolerances of 1e-6 to 1e-12:
+/// 0.6 to 1.6 times the time; of more bodies up to five times, and with flattening or relativity beside the pulls about twice.
 ///
 /// Under forces that are linear in the place and the velocity of each body it takes a fifth to a third of the time of Verner's
 /// method, and is off by a hundredth.
@@ -37,7 +37,7 @@ pub(super) fn first_choice(
     let told = if formula {
         forces.iter().all(|force| !force.is_formula() || force.is_entire())
     } else {
-        matches!(forces, [force] if force.as_newtonian().is_some()) || (!touching && turns_linearly(forces))
+        pull_in_fields(forces, active) || (!touching && turns_linearly(forces))
     };
     let serves = |method: &&'static Method| {
         told && active.len() <= RING_MAX
@@ -46,6 +46,25 @@ pub(super) fn first_choice(
             && check(method, forces, active, passive, groups).is_ok()
     };
     series.filter(serves).or_else(|| if formula { registry::method("dop853") } else { None })
+}
+
+/// Whether one force is the pull of all on each other, and others are fields.
+fn pull_in_fields(forces: &[Arc<dyn ForceTerm>], active: &[usize]) -> bool {
+    let pulls = |force: &Arc<dyn ForceTerm>| match active {
+        [first, second, ..] => {
+            force.as_newtonian().is_some() || force.as_coulomb([*first, *second]).is_some()
+        }
+        _ => force.as_newtonian().is_some(),
+    };
+    let is_field = |force: &Arc<dyn ForceTerm>| {
+        let body = active.first().copied().unwrap_or(0);
+        force.as_uniform().is_some()
+            || force.as_electric(body).is_some()
+            || force.as_magnetic().is_some()
+            || force.as_rotating().is_some()
+    };
+    let (pull, fields): (Vec<_>, Vec<_>) = forces.iter().partition(|force| pulls(force));
+    pull.len() == 1 && fields.into_iter().all(is_field)
 }
 
 /// Whether forces are linear in the place and the velocity of each body, and some of them turns it back. What only falls or
