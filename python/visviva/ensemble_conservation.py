@@ -194,7 +194,17 @@ class EnsembleConservation(Shown):
         upto = f", of which {ended}, told up to there" if ended else ""
         title = f"Conservation in {count(len(self.virial), 'copy', 'copies')}{upto}: the largest drifts"
         hints = dict.fromkeys(hint for each in self._copies for hint in each._hints)
+        hints.update(dict.fromkeys(told for row in self.rows if (told := _beyond_numbers(row))))
         return Sheet(title, rows, header, "\n".join(hints))
+
+
+def _beyond_numbers(row: DriftOfCopies) -> str:
+    """What is to be said of copies whose drift is no number, as beyond float64; nothing if there are none."""
+    copies = np.flatnonzero(row.conserved & ~np.isfinite(row.max))
+    if not len(copies):
+        return ""
+    which = f"copy {copies[0]}" if len(copies) == 1 else f"{len(copies)} copies, {copies[0]} the first,"
+    return f"The {row.name} of {which} is no number, and not among these."
 
 
 def conservation_of_copies(out: EnsembleTrajectory, about: ArrayLike | str | None) -> EnsembleConservation:

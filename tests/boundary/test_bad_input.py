@@ -84,6 +84,7 @@ copies.run(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fi
 copies.plan(1, method="rk4", dt=0.1, atol=1e-9)     | atol        | rk4 has a fixed step
 copies.run(1, method="rk4", dt=-0.1)                | dt          | from t0 = 0.0 to 1.0, got -0.1
 scene.run([1.0, 0.0])                               | t           | lead away from t0 = 0.0 in order, got t\[1\] = 0.0 after 1.0
+scene.run([4.0, 1.0, -2.0])                         | t           | lead away from t0 = 0.0 in order, got t\[1\] = 1.0 after 4.0
 scene.run(1, rtol=-1)                               | rtol        | 2.3e-14 .* to 1, got -1.0$
 scene.run(1, method="rk4", dt=np.nan)               | dt          | dt is nan
 scene.run(1, method="dop853", dt=0.1)               | dt          | leave dt out

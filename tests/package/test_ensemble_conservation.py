@@ -53,6 +53,19 @@ def test_what_no_copy_conserves_has_no_worst() -> None:
     assert table.energy.conserved.all()
 
 
+def test_copies_whose_drift_is_no_number_are_told() -> None:
+    """Energies beyond float64, of the second and the third copy: the table is that of the first."""
+    still = vv.Scene(vv.Particles([1.0], [[0.0, 0, 0]], [[1.0, 0.0, 0.0]]))
+    speeds = np.zeros((3, 1, 3))
+    speeds[:, 0, 0] = 1.0, 1e200, -1e200
+    table = still.ensemble(velocity=speeds).run(t=[0.0, 1.0]).conservation()
+    assert table.energy.worst == 0
+    assert "The energy of 2 copies, 1 the first, is no number" in str(table)
+    assert "momentum of" not in str(table)
+    assert "no number" not in str(table[:1])
+    assert "The energy of copy 0 is no number" in str(table[1:2])
+
+
 def test_a_copy_that_failed_at_once_is_nan_and_no_other() -> None:
     """Two stars that meet end before the first output; the other two go on."""
     two = vv.Scene(

@@ -312,6 +312,8 @@ impl Request {
             );
         }
         let before = |index: usize| if index == 0 { t0 } else { times[index - 1] };
+        // The first that leads away tells where to; the last may be the one that is out of order.
+        let direction = times.iter().find(|&&t| t != t0).map_or(direction, |t| (t - t0).signum());
         let back = |&index: &usize| (times[index] - before(index)) * direction < 0.0;
         let index = (0..times.len()).find(back).unwrap_or(0);
         Error::invalid(
