@@ -48,6 +48,8 @@ pub struct Context<'a> {
     pub t0: f64,
     /// Threads that one evaluation may use.
     pub threads: usize,
+    /// Whether steps are equal, and cannot be shorter where something lies unseen in them.
+    pub equal_steps: bool,
 }
 
 /// Row and lane of a body of a packed system.

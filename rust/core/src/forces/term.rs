@@ -302,6 +302,11 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn may_change_anywhere(&self) -> bool {
         false
     }
+    /// Whether something in it may be narrower than a step, which [`System::seen_until`](crate::ode::system::System::seen_until)
+    /// finds.
+    fn may_be_narrow(&self) -> bool {
+        false
+    }
     /// Whether it is a formula of places and times that is not known beforehand, nor what their last digits change in it.
     fn is_formula(&self) -> bool {
         false

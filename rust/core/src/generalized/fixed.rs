@@ -19,6 +19,8 @@ pub(super) struct FixedSteps<S: Controlled> {
     stepper: Box<dyn Stepper<S>>,
     h: f64,
     node: u64,
+    /// Where a step looks.
+    looks: Vec<f64>,
     next: State<S>,
     /// The parts of the steps tried last up to which nothing lies between their nodes, if something does.
     pub(super) seen: Option<S>,
@@ -33,7 +35,7 @@ impl<S: Controlled> FixedSteps<S> {
     ) -> Result<Self> {
         let mut stepper = stepper(method, h, system, state)?;
         stepper.look_back();
-        Ok(Self { stepper, h, node: 0, next: state.clone(), seen: None })
+        Ok(Self { stepper, h, node: 0, looks: method.looks(), next: state.clone(), seen: None })
     }
 }
 
@@ -76,7 +78,8 @@ impl<S: Controlled> Trial<S> for FixedSteps<S> {
         }
         let (times, ends) =
             ((clock.elapsed, S::next_step(clock, running)), [state.all().0, self.next.all().0]);
-        self.seen = system.seen_until(&Taken::from_end_to_end(running, times, ends))?;
+        let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(running, times, ends) };
+        self.seen = system.seen_until(&taken)?;
         // Without an error the next step is the longest, which is this one.
         let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));
         clock.h = S::splat(self.h);

@@ -114,7 +114,6 @@ impl<S: Width + Controlled> Ends<S> {
             let moves_little = match at_ends[index] {
                 AtEnds::Fades(_) => most - least <= little || fastest * gap <= little,
                 AtEnds::Power(power) => grows_little((least, most), fastest * gap, factor(power)),
-                AtEnds::Unasked => true,
             };
             Hull { ends, least, most, moves_little }
         };
@@ -225,7 +224,6 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
                 AtEnds::Fades(Fades::Below) => most.less(below),
                 AtEnds::Fades(Fades::Beyond) => most.less(under).or(beyond.less(least)),
                 AtEnds::Fades(Fades::Nowhere) => most.less(least),
-                AtEnds::Unasked => continue,
                 AtEnds::Power(power) => {
                     let part = factor(*power);
                     all = all.and(grows_little((least, most), fastest * gap, V::splat(part)));

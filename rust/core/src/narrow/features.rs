@@ -19,22 +19,14 @@ pub(super) enum AtEnds {
     Fades(Fades),
     /// That nothing happens as long as it grows or shrinks by no large factor: of what goes with this power of its inverse.
     Power(f64),
-    /// Nothing is asked of it.
-    Unasked,
 }
 
 impl AtEnds {
-    /// In equal steps, of which those that go through poles tell more than that something was unseen.
-    pub(super) fn of_equal_steps(self) -> Self {
-        if matches!(self, Self::Power(_)) { Self::Unasked } else { self }
-    }
-
     /// The most that an argument is to move between two places where a method looks, which is so much of others.
     pub(super) fn reach(self, reach: f64) -> f64 {
         match self {
             Self::Power(_) => reach.min(REACH_OF_POWERS),
             Self::Fades(_) => reach,
-            Self::Unasked => f64::INFINITY,
         }
     }
 }

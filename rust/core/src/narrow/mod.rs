@@ -20,7 +20,6 @@ use crate::numerics::real::Mask;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
 use ends::Ends;
-use features::AtEnds;
 pub use features::{Equations, Features};
 use search::Search;
 use std::sync::Arc;
@@ -59,8 +58,6 @@ pub struct Narrow<S> {
     of: Arc<Features>,
     form: Form,
     ends: Ends<S>,
-    /// What the ends of a step tell of each argument.
-    at_ends: Vec<AtEnds>,
     parameters: Vec<S>,
     /// The time at the start of the run.
     t0: f64,
@@ -93,10 +90,6 @@ impl<S: Width + Controlled> Narrow<S> {
             t0,
             tolerance: tolerance.unwrap_or(UNSEEN_BY_EQUAL),
             equal: tolerance.is_none(),
-            at_ends: match tolerance {
-                Some(_) => of.at_ends.clone(),
-                None => of.at_ends.iter().map(|at_ends| at_ends.of_equal_steps()).collect(),
-            },
             reach,
             weak: None,
             search: None,
@@ -147,7 +140,7 @@ impl<S: Width + Controlled> Narrow<S> {
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let little = (SHARE * self.reach(step), self.gap(step));
-        let Some(told) = self.ends.tell(step, self.t0, little, &self.at_ends) else { return Ok(None) };
+        let Some(told) = self.ends.tell(step, self.t0, little, &self.of.at_ends) else { return Ok(None) };
         let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
         for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
             let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
@@ -156,14 +149,14 @@ impl<S: Width + Controlled> Narrow<S> {
             if weak.holds(
                 &parameters,
                 (step, lane, self.t0),
-                &self.ends.hulls(step, lane, little, &self.at_ends),
+                &self.ends.hulls(step, lane, little, &self.of.at_ends),
                 self.tolerance,
             ) {
                 continue;
             }
             let way = Way::of(self.form, step, lane, self.t0);
             let search = self.search.get_or_insert_with(|| Search::new(of));
-            let part = search.seen_until(&parameters, way, (reach, &self.at_ends), self.tolerance);
+            let part = search.seen_until(&parameters, way, (reach, self.equal), self.tolerance);
             seen = seen.with_lane(lane, part);
         }
         if !seen.less(S::one()).any() {

@@ -16,6 +16,8 @@ use std::sync::Arc;
 const SPACING: f64 = 1.0 / 12.0;
 /// Rounds of a search for a turning point, each in a part of 2/9 of the last.
 const TURNING_ROUNDS: usize = 12;
+/// In the last of them what turns smoothly changes by less than this.
+const SHARP: f64 = 0.5;
 /// Rounds of a search for a level, and how near an argument has to come to it.
 const LEVEL_ROUNDS: usize = 40;
 const NEAR: f64 = 0.2;
@@ -37,6 +39,14 @@ const SMALLEST_SIZE: f64 = 1e-8;
 struct Point {
     theta: f64,
     u: f64,
+}
+
+/// Where an argument turns.
+#[derive(Clone, Copy, Debug)]
+struct Turning {
+    at: Point,
+    /// Whether it does so as the logarithm of what vanishes, however closely it is looked at.
+    is_sharp: bool,
 }
 
 /// A piece of the way on which an argument goes to one side, between two places where the method looks.
@@ -69,12 +79,13 @@ impl Search {
         }
     }
 
-    /// The part of a way on which nothing that matters is unseen, short of what is.
+    /// The part of a way on which nothing that matters is unseen, short of what is. Arguments are followed that move by more than a
+    /// reach, in steps that are equal or not.
     pub(super) fn seen_until(
         &mut self,
         parameters: &[f64],
         way: Way,
-        asked: (f64, &[AtEnds]),
+        asked: (f64, bool),
         tolerance: f64,
     ) -> f64 {
         if self.parameters != parameters {
@@ -85,7 +96,7 @@ impl Search {
         }
         let mut pieces = self.pieces(&way, asked);
         pieces.sort_by(|a, b| a.from.theta.total_cmp(&b.from.theta));
-        let sizes = sizes(&way, self.of.rates.outputs());
+        let sizes = sizes(&way, self.of.rates.outputs(), asked.1);
         let mut first = f64::INFINITY;
         for piece in pieces {
             if piece.from.theta >= first {
@@ -112,8 +123,9 @@ impl Search {
         sampled
     }
 
-    /// The pieces of the way on which arguments move by more than the reach between two places where the method looks.
-    fn pieces(&mut self, way: &Way, (reach, at_ends): (f64, &[AtEnds])) -> Vec<Piece> {
+    /// The pieces of the way on which arguments move by more than the reach between two places where the method looks. Equal steps
+    /// that go through poles tell more than that something was unseen.
+    fn pieces(&mut self, way: &Way, (reach, equal): (f64, bool)) -> Vec<Piece> {
         let mut places = vec![0.0];
         for looks in way.nodes.windows(2) {
             let parts = ((looks[1] - looks[0]) / SPACING).ceil().max(2.0);
@@ -123,7 +135,7 @@ impl Search {
         let sampled = self.sampled(way, &places);
         let mut pieces = Vec::new();
         for (argument, values) in sampled.iter().enumerate() {
-            let mut turnings: Vec<Point> = Vec::new();
+            let mut turnings: Vec<Turning> = Vec::new();
             for j in 1..values.len() - 1 {
                 let (before, after) = (values[j] - values[j - 1], values[j + 1] - values[j]);
                 if before * after < 0.0 || (before == 0.0) != (after == 0.0) {
@@ -145,13 +157,17 @@ impl Search {
             let sample = |theta: f64| places.iter().zip(values).find(|(place, _)| **place == theta);
             for looks in way.nodes.windows(2) {
                 let ends = looks.iter().filter_map(|&theta| sample(theta));
-                let inside = turnings.iter().filter(|p| p.theta > looks[0] && p.theta < looks[1]).copied();
+                let inside = || turnings.iter().filter(|p| p.at.theta > looks[0] && p.at.theta < looks[1]);
+                let at_ends = self.of.at_ends[argument];
+                if equal && matches!(at_ends, AtEnds::Power(_)) && inside().any(|p| p.is_sharp) {
+                    continue;
+                }
                 let mut points: Vec<Point> =
-                    ends.map(|(&theta, &u)| Point { theta, u }).chain(inside).collect();
+                    ends.map(|(&theta, &u)| Point { theta, u }).chain(inside().map(|p| p.at)).collect();
                 points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
                 let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
                 let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
-                let reach = at_ends[argument].reach(reach);
+                let reach = at_ends.reach(reach);
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }
@@ -164,7 +180,14 @@ impl Search {
     }
 
     /// Where an argument turns between two places.
-    fn turning(&mut self, way: &Way, argument: usize, (mut from, mut to): (f64, f64), is_top: bool) -> Point {
+    fn turning(
+        &mut self,
+        way: &Way,
+        argument: usize,
+        (mut from, mut to): (f64, f64),
+        is_top: bool,
+    ) -> Turning {
+        let mut is_sharp = false;
         let mut best = Point { theta: from, u: f64::NAN };
         for _ in 0..TURNING_ROUNDS {
             let part = (to - from) / (WIDTH + 1) as f64;
@@ -178,8 +201,9 @@ impl Search {
                 }
             }
             (from, to) = (best.theta - part, best.theta + part);
+            is_sharp = found.iter().any(|u| (u - best.u).abs() > SHARP);
         }
-        best
+        Turning { at: best, is_sharp }
     }
 
     /// The first place of a piece at which what no look sees matters.
@@ -316,11 +340,14 @@ fn levels(from: f64, to: f64) -> Vec<f64> {
     levels
 }
 
-/// How large the numbers are that the right-hand side moves, so many from the last.
-fn sizes(way: &Way, moved: usize) -> Vec<f64> {
+/// How large the numbers are that the right-hand side moves, so many from the last. To equal steps, which are not to be shorter, a
+/// velocity that moves nothing by its last digit is nothing: what rests may be pushed by far ends of something wide.
+fn sizes(way: &Way, moved: usize, equal: bool) -> Vec<f64> {
     let [start, end] = way.ends();
     let size = |(a, b): (&f64, &f64)| a.abs().max(b.abs()).max((b - a).abs());
     let sizes: Vec<f64> = start.iter().zip(end).skip(start.len() - moved).map(size).collect();
     let most = sizes.iter().copied().fold(0.0, f64::max);
-    sizes.into_iter().map(|size| size.max(SMALLEST_SIZE * most)).collect()
+    let farthest = start.iter().take(start.len() - moved).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let least = if equal { f64::EPSILON * farthest / way.h.abs() } else { 0.0 };
+    sizes.into_iter().map(|size| size.max(SMALLEST_SIZE * most).max(least)).collect()
 }

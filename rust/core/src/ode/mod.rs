@@ -207,6 +207,23 @@ impl Method {
         !matches!(self.scheme, Scheme::Taylor(_))
     }
 
+    /// Where an equal step of it looks at forces, as parts of the step, as far as that is within it.
+    pub fn looks(&self) -> Vec<f64> {
+        let inside = |place: &f64| *place > 0.0 && *place < 1.0;
+        match &self.scheme {
+            Scheme::Splitting(table) | Scheme::NystromSplitting(table) | Scheme::Boris(table) => {
+                let drifted = table.drifts.iter().scan(0.0, |place, drift| {
+                    *place += drift.high();
+                    Some(*place)
+                });
+                let kicks = table.kicks.iter().skip(1).zip(drifted);
+                kicks.filter(|(kick, _)| kick.high() != 0.0).map(|(_, place)| place).filter(inside).collect()
+            }
+            Scheme::RungeKutta(table) => table.c.iter().map(|c| c.high()).filter(inside).collect(),
+            Scheme::Multistep(_) | Scheme::Embedded(_) | Scheme::Taylor(_) => Vec::new(),
+        }
+    }
+
     /// The most blocks, each of as many numbers as an evaluation gives, that its steps hold at a node besides the state
     /// ([`Stepper::memory`](stepper::Stepper::memory)).
     pub const fn held(&self) -> usize {

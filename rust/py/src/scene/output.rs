@@ -4,6 +4,7 @@ use crate::arrays::{moved, moved_column};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::Error;
+use visviva_core::narrow::UNSEEN;
 use visviva_core::numerics::simd::tier;
 use visviva_core::scene::Scene;
 use visviva_core::scene::collisions::{Collision, Table};
@@ -238,6 +239,7 @@ pub(super) fn status(ending: &Ending) -> i8 {
         Ending::CloseEncounter { .. } => 1,
         Ending::NoStep
         | Ending::NotFinite
+        | Ending::PassedOver
         | Ending::Undefined { .. }
         | Ending::Sticking { .. }
         | Ending::Endless => 2,
@@ -285,6 +287,7 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
                 .to_owned(),
             time,
         }),
+        Ending::PassedOver => Some(Error::Convergence { message: UNSEEN.to_owned(), time }),
         Ending::NotFinite if chosen => Some(Error::Convergence {
             message: "steps that turn the rigid bodies were made ever smaller and did not agree to rtol; a larger rtol, a \
                       shorter run, or a step dt of your own may pass"

@@ -336,6 +336,9 @@ impl ForceTerm for ExpressionForce {
     fn may_change_anywhere(&self) -> bool {
         self.expressions.may_hide
     }
+    fn may_be_narrow(&self) -> bool {
+        self.expressions.narrow.is_some()
+    }
     fn is_formula(&self) -> bool {
         true
     }

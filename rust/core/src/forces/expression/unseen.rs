@@ -35,7 +35,8 @@ impl Unseen {
     pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Option<Self> {
         let features = term.expressions.narrow.as_ref()?;
         let way = Way::new(term, context);
-        let stepped = Stepped { t0: way.t0, tolerance: Some(TOLERANCE), reach: REACH };
+        let tolerance = (!context.equal_steps).then_some(TOLERANCE);
+        let stepped = Stepped { t0: way.t0, tolerance, reach: REACH };
         let parameters = parameters(term, context);
         let of_block = way.shape.rows / parameters.len();
         let row = |(row, force): (usize, &Lanes)| {

@@ -1,5 +1,7 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
+mod passed_over;
+
 use super::super::layout::Layout;
 use super::super::plan::Plan;
 use super::super::unit::{self, Prepared, Unit};
@@ -18,6 +20,7 @@ use crate::ode::stepper::{Stepper, stepper};
 use crate::ode::system::System;
 use crate::parallel::Ticker;
 use crate::rigid::motion::body_stepper;
+use passed_over::PassedOver;
 
 /// Runs the units, a state full of them at a time.
 ///
@@ -77,12 +80,7 @@ fn lockstep(
         None => stepper.restart(),
         Some(from) => held::take_up(job, from, &prepared, state, &mut **stepper),
     }
-    let unit_of_time = plan.units.time;
-    let place = |&t: &f64| {
-        let place = fixed::place(job.scene.elapsed(t), dt, Real::max(t.abs(), t0.abs()));
-        Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
-    };
-    let places = job.times.iter().map(place);
+    let places = job.times.iter().map(|&t| place(job, t));
     let mut watches = Vec::new();
     if job.watched() {
         for (lane, unit) in prepared.iter().enumerate() {
@@ -105,8 +103,9 @@ fn lockstep(
             abreast.push(eight);
         }
     }
+    let passed_over = PassedOver::new(job, units.len());
     let along = match (plan.layout, &watches[..]) {
-        (Layout::Packed, [Some(watch)]) => Along::of(watch, job.step()),
+        (Layout::Packed, [Some(watch)]) if !passed_over.looks() => Along::of(watch, job.step()),
         _ => None,
     };
     let mut records = Records {
@@ -116,8 +115,9 @@ fn lockstep(
         abreast,
         step: job.step(),
         between: None,
-        watched: watches.iter().any(Option::is_some),
-        looks: vec![0; watches.len()],
+        watched: passed_over.looks() || watches.iter().any(Option::is_some),
+        passed_over,
+        looks: vec![0; units.len()],
         spent: vec![None; units.len()],
         asks: false,
         watches,
@@ -145,7 +145,7 @@ fn lockstep(
     };
     // What it takes is told, not what was done twice.
     let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() - repeated };
-    let ended = place(&job.end()).past.is_none() || records.last.is_none();
+    let ended = place(job, job.end()).past.is_none() || records.last.is_none();
     let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
     if job.keeps && stands && ended && node > 0 {
         held::leave(plan.method, &records.units, &mut reports, node, state, &mut **stepper);
@@ -155,6 +155,14 @@ fn lockstep(
         halved::look(job, &records.units, reached, &mut **stepper, &mut dynamics, ticker)?;
     }
     Ok(reports)
+}
+
+/// Where a time lies among the nodes of a run, the time past a node in the plan's units.
+fn place(job: &Job<'_>, t: f64) -> Place {
+    let (plan, t0) = (job.plan, job.scene.t0);
+    let dt = plan.dt.unwrap_or(plan.direction);
+    let place = fixed::place(job.scene.elapsed(t), dt, Real::max(t.abs(), t0.abs()));
+    Place { past: place.past.map(|past| scale(past, -plan.units.time)), ..place }
 }
 
 /// Lays units at their start into a state.
@@ -173,8 +181,10 @@ struct Records<'a> {
     step: f64,
     /// Room for states between nodes.
     between: Option<State<Lanes>>,
-    /// Whether any unit has events.
+    /// Whether any unit has events, or may pass over something.
     watched: bool,
+    /// The units that have.
+    passed_over: PassedOver,
     /// The events of the only unit, if they are looked for in several steps side by side.
     along: Option<Along<'a>>,
     /// The node at which their watch stands, then.
@@ -253,6 +263,7 @@ impl Recorder<Lanes> for Records<'_> {
         let Taken { node, before, after, part, stepper, system, repeated } = taken;
         let from = self.step * node as f64;
         let to = part.map_or_else(|| self.step * (node + 1) as f64, |part| from + part);
+        let over = self.passed_over.lanes([before, after], (from, to - from), system)?;
         let (span, steps) = (Span { from, to }, node + u64::from(part.is_none()));
         let between = self.between.get_or_insert_with(|| before.clone());
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
@@ -274,6 +285,14 @@ impl Recorder<Lanes> for Records<'_> {
                 continue;
             }
             let begun = inside.system.evaluations();
+            if over.lane(lane % WIDTH) {
+                let counts = Counts { steps, rejected: 0, evaluations: begun - repeated };
+                let counts = paid_by(lane, counts, &self.looks);
+                self.passed_over.end(self.job, (unit, lane), (before, node), counts);
+                (self.failed[lane], self.ended[lane]) = (Some(self.rows), true);
+                self.running -= 1;
+                continue;
+            }
             let [looked_at, in_step] = blocks[lane / WIDTH % 2].map(|lanes| lanes.lane(lane % WIDTH));
             let mut over = self.failed[lane].is_some();
             if let (Some(watch), true) = (watch, looked_at) {
@@ -339,13 +358,15 @@ impl Records<'_> {
         self.watches.resize_with(self.units.len(), || None);
         let watches = core::mem::take(&mut self.watches);
         let report = |((lane, unit), watch): ((usize, &Prepared), Option<Box<Watch<'_>>>)| {
+            let ended = self.passed_over.take(lane);
             let (rows, ending) = match self.failed[lane] {
                 Some(failed) => (failed, Ending::NotFinite),
                 None => (self.rows, otherwise.clone()),
             };
             let counts = self.spent[lane];
             let counts = counts.unwrap_or_else(|| paid_by(lane, all, &self.looks));
-            let mut report = self.job.report(unit, state, lane, time, ending, rows, counts);
+            let mut report =
+                ended.unwrap_or_else(|| self.job.report(unit, state, lane, time, ending, rows, counts));
             if let Some(watch) = watch {
                 watch.tell(&mut report);
             }

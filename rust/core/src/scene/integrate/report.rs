@@ -31,6 +31,8 @@ pub enum Ending {
         /// Which.
         body: usize,
     },
+    /// A step went over something narrower than it is, and felt nothing of it.
+    PassedOver,
     /// The state became infinite or undefined.
     NotFinite,
     /// Bodies came to a distance, or to a speed, at which a force on them is not known.

@@ -27,9 +27,18 @@ impl Plan {
         if unit.follows { Layout::Batched } else { self.layout }
     }
 
-    /// Units that one state holds at a fixed step. Where each lane halves steps of its own, a lane is one unit's alone.
+    /// Units that one state holds at a fixed step. Where each lane halves steps of its own, or tells what it has not seen, a lane
+    /// is one unit's alone.
     pub fn in_lockstep(&self) -> usize {
-        if self.tolerance.is_some() { self.layout.units() } else { self.layout.in_lockstep() }
+        let alone = self.tolerance.is_some() || self.passes_over();
+        if alone { self.layout.units() } else { self.layout.in_lockstep() }
+    }
+
+    /// Whether steps of a given length may pass over what is narrower than they are.
+    pub fn passes_over(&self) -> bool {
+        !self.has_own_times()
+            && !self.turning.steps()
+            && self.forces.iter().any(|force| force.may_be_narrow())
     }
 
     /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
