@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -29,6 +30,9 @@ def needed(module: str, argument: str, extra: str | None = None, instead: str = 
     visviva.MissingPackage
         If it is not installed.
     """
+    found = sys.modules.get(module)
+    if found is not None:
+        return found
     try:
         return import_module(module)
     except ImportError as error:

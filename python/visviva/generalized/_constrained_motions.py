@@ -86,7 +86,7 @@ class Constrained:
         without = source.description | {"holonomic": [], "nonholonomic": []}
         state = (system.position, system._second, system.t0)
         self.free._prepare(
-            type(source)(source.kind, source.names, source.symbols, source.parameters, without),
+            type(source)(source.kind, source.names, source.groups, source.parameters, without),
             list(system.parameters.values()),
             state,
         )

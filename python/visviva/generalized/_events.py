@@ -132,8 +132,8 @@ def _nodes(system: States, index: int, given: Any) -> tuple[list[Node], int]:
 
 
 def _symbols(system: States, nodes: Nodes) -> Symbols:
-    if system._source.symbols is not None:
-        return Symbols(nodes, *system._source.symbols)
+    if system._source.groups is not None:
+        return Symbols(nodes, *system._source.groups)
     # Of a function of Python the names tell what is meant.
     sp = sympy()
     first = [sp.Function(name)(time._sympy_()) for name in system.coordinates]

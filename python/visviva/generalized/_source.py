@@ -11,7 +11,7 @@ from visviva._arrays import number
 from visviva._keywords import check_call
 from visviva.errors import InvalidInput
 from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, recorded
-from visviva.generalized._symbolic import Symbols, sympy, time
+from visviva.generalized._symbolic import Symbols, rates_of, sympy, time
 
 __all__ = ["Source", "calls", "described", "placed_arguments", "refuse_other_arguments"]
 
@@ -26,12 +26,21 @@ class Source:
 
     kind: str
     names: tuple[str, ...]
-    #: Symbols of coordinates, of velocities or momenta, and of parameters; None of a function of Python.
-    symbols: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]] | None
+    #: Symbols of coordinates, of velocities or momenta, and of parameters; None of a function of Python. Velocities
+    #: that are the derivatives of the coordinates are None here: to make them takes time.
+    groups: tuple[tuple[Any, ...], tuple[Any, ...] | None, tuple[Any, ...]] | None
     parameters: tuple[str, ...]
     description: dict[str, Any]
     #: Of coordinates, time and parameters, the points that a picture shows; None where nobody said.
     points: Callable[..., Any] | None = None
+
+    @property
+    def symbols(self) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]] | None:
+        """All symbols, velocities among them."""
+        if self.groups is None:
+            return None
+        first, second, parameters = self.groups
+        return first, rates_of(first) if second is None else second, parameters
 
     def nodes(self, argument: str, expressions: Iterable[Any]) -> tuple[list[Any], list[int]]:
         """Give further expressions of the same state as nodes and their places."""
@@ -41,10 +50,9 @@ class Source:
         return nodes.all, roots
 
     def _walk(self, nodes: Nodes) -> Callable[[str, Any], int]:
-        if self.symbols is None:
+        if self.groups is None:
             return calls(nodes, self.names, self.parameters, _SECOND[self.kind])
-        first, second, parameters = self.symbols
-        return Symbols(nodes, first, second, parameters).node
+        return Symbols(nodes, *self.groups).node
 
 
 def described(
@@ -70,17 +78,17 @@ def described(
     if callable(function) and not hasattr(function, "free_symbols"):
         names = tuple(_name(each) for each in listed)
         keys = tuple(_name(each) for each in given)
-        symbols = None
+        groups = None
         walk = calls(nodes, names, keys, _SECOND[kind])
     else:
         sp = sympy(argument)
         t = time._sympy_()
         first = tuple([_coordinate(sp, t, each) for each in listed])
-        others = _second(sp, t, kind, first, second)
+        others = _second(sp, kind, first, second)
         names = tuple([_label(each) for each in first])
         keys = tuple([_name(each) for each in given])
         parameter_symbols = tuple([_parameter(sp, t, each, function) for each in given])
-        symbols = (first, others, parameter_symbols)
+        groups = (first, others, parameter_symbols)
         walk = Symbols(nodes, first, others, parameter_symbols).node
     for what, each in (("coordinates", names), ("parameters", keys)):
         if len(set(each)) < len(each):
@@ -92,10 +100,10 @@ def described(
     shared = [key for key in keys if key in names]
     if shared:
         raise InvalidInput("parameters", f"{shared[0]!r} is a coordinate; give the parameter another name")
-    if symbols is not None:
-        all_first, all_second, all_parameters = symbols
+    if groups is not None:
+        all_first, all_second, all_parameters = groups
         taken = {*all_first, *all_parameters, time._sympy_()}
-        for symbol in all_second:
+        for symbol in all_second or ():
             if symbol in taken:
                 raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
             taken.add(symbol)
@@ -121,7 +129,7 @@ def described(
         ],
         "nodes": nodes.all,
     }
-    return Source(kind, names, symbols, keys, description), list(given.values())
+    return Source(kind, names, groups, keys, description), list(given.values())
 
 
 def _listed(argument: str, value: Any) -> list[Any]:
@@ -161,13 +169,12 @@ def _coordinate(sp: Any, t: Any, value: Any) -> Any:
     )
 
 
-def _second(sp: Any, t: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...]:
-    """Give the symbols of velocities, or of momenta."""
+def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...] | None:
+    """Give the symbols of velocities, or of momenta; None of velocities that are the derivatives of coordinates."""
     argument = _SECOND_ARGUMENT[kind]
     if second is None:
         if kind == "lagrangian" and not any(isinstance(each, sp.Symbol) for each in first):
-            # What each.diff(t) gives, which is slow to find that there is nothing to carry out.
-            return tuple(sp.Derivative(each, t, evaluate=False) for each in first)
+            return None
         what = "velocities of coordinates that are symbols" if kind == "lagrangian" else "momenta"
         raise InvalidInput(argument, f"expected the {what}, one for each of {list(first)}")
     listed = tuple(_listed(argument, second))
