@@ -53,7 +53,7 @@ def _refuse_time_elsewhere(call: Callable[..., SupportsFloat]) -> None:
     # As forces have it, which take (position, velocity, t): the place would be taken for the time.
     from visviva.generalized._source import placed_arguments
 
-    placed = placed_arguments(call)
+    placed = [each.name for each in placed_arguments(call)]
     if {"t", "time"} & {*placed[1:3]} and not {"t", "time"} & {*placed[:1]}:
         got = ", ".join(placed)
         raise InvalidInput("call", f"expected a function f({', '.join(_OF_POINTS)}), in this order, got f({got})")

@@ -35,6 +35,8 @@ __all__ = ["ExpressionForce", "check_units", "formula_of", "parameter_names"]
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
 _STATE = ("position", "velocity", "t")
+#: Second arguments that are velocities even with a default.
+_OF_VELOCITY = ("v", "velocity", "_", "_v", "_velocity")
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -81,7 +83,12 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     Functions are called once with ``(position, velocity, t, **parameters)``, with expressions in the place of numbers:
     arithmetic and NumPy's functions, and no branches. A potential may leave out what it has nothing to do with:
     ``(position, t, **parameters)``, where the second is called ``t`` or ``time``, and ``(position, **parameters)``.
+    Other arguments with a default keep it, ``lambda r, k=2.0: k * r[0] ** 2``, unless `parameters` has a value of that
+    name; copies of an ensemble differ in what `parameters` has.
     All numbers are in the units of the scene; ``t`` is its own time.
+    A wall, a bump or a pulse may be narrower than a step: methods that choose their steps look for those of ``exp`` and
+    what is written with it (``tanh``, ``cosh``), and for what falls as the square or more steeply, and shorten steps
+    there. Equal steps (`dt`) end the run before such a one, by a `ConvergenceError`: take a shorter `dt`.
     Far from zero times are numbers that lie apart, 2.4e-7 near 1.7e9, and what changes fast from one to the next is not
     known better (an `AccuracyWarning` says so): count time from the start of the run. Places and velocities are those
     of the scene, too: air about a body that moves is not at rest in them.
@@ -137,11 +144,16 @@ def _of_state(potential: Any, names: tuple[str, ...]) -> Any:
     if not callable(potential) or hasattr(potential, "free_symbols"):
         return potential
     function = not_compiled(potential)
-    if takes(function, _STATE, names):
-        return potential
-    placed = [name for name in placed_arguments(function) if name not in names]
-    if placed[1:2] in (["t"], ["time"]) and takes(function, _STATE[::2], names):
+    placed = [each for each in placed_arguments(function) if each.name not in names]
+    second = placed[1].name if len(placed) > 1 else ""
+    if placed and (placed[0].name, second) == ("x", "y"):
+        return potential  # which is refused by name
+    # A potential has nothing to do with velocities: what has a default is no place for one, whatever comes after it.
+    keeps = second not in _OF_VELOCITY and len(placed) > 1 and placed[1].default is not inspect.Parameter.empty
+    if second in ("t", "time") and takes(function, _STATE[::2], names):
         step = 2
+    elif not keeps and takes(function, _STATE, names):
+        return potential
     elif takes(function, _STATE[:1], names):
         _refuse_time_elsewhere(function, names)
         step = len(_STATE)

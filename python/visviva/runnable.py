@@ -53,10 +53,11 @@ class Runnable(Shown, ABC, Generic[_Result]):
             scene. An end time alone records the start and the end.
         method : str or Method, optional
             One of `visviva.methods`, or its name. ``"auto"`` takes a closed form where there is one, else ``"taylor"``
-            for up to eight massive bodies under gravity alone, under forces that are linear in places and velocities,
-            beside formulas (`ExpressionForce`) of polynomials, sines and cosines, and for rigid bodies that nothing but
-            their weight and torques along their axes turn, ``"dop853"`` beside other formulas, of which its shorter
-            steps see more, else ``"verner98"``. A method named here always runs.
+            for up to eight massive bodies or charges that attract or repel each other, alone or in uniform, electric
+            and magnetic fields and rotating frames, under forces that are linear in places and velocities, beside
+            formulas (`ExpressionForce`) of polynomials, sines and cosines, and for rigid bodies that nothing but their
+            weight and torques along their axes turn, ``"dop853"`` beside other formulas, of which its shorter steps see
+            more, else ``"verner98"``. A method named here always runs.
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         time_transformation : {"potential_energy", "distance"}, optional
@@ -147,7 +148,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         visviva.CloseEncounter
             Of a scene: two bodies came so close that the step fell to zero; ``.trajectory`` holds what was done.
         visviva.ConvergenceError
-            Of a scene: the step control gave up, `max_steps` was reached, or spheres came to rest on each other;
+            Of a scene: the step control gave up, `max_steps` was reached, spheres came to rest on each other, or equal
+            steps would pass over a wall, a bump or a pulse of an `ExpressionForce` that is narrower than the step;
             ``.trajectory`` likewise. A copy of an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
         visviva.Interrupted
             Ctrl-C; ``.trajectory`` likewise. It is a `KeyboardInterrupt`, which ``except Exception`` lets pass.

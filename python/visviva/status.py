@@ -18,7 +18,9 @@ class Status(NamedCode):
         Bodies came too close for the steps: a softening, a radius and ``collisions=``, or another method.
     STEP_FAILURE : 2
         The step size fell to zero, the state was no longer finite, or the stages of an implicit method were not found:
-        a smaller step, a larger `rtol`, or a look at the singularity. In generalized coordinates also `max_steps`.
+        a smaller step, a larger `rtol`, or a look at the singularity. Or the next of equal steps would pass over a
+        wall, a bump or a pulse of a formula that is narrower than the step: a shorter `dt`, or a method that chooses
+        its steps. In generalized coordinates also `max_steps`.
     INTERRUPTED : 3
         Ctrl-C came, or, of a copy, before it began: run on from what there is, or again.
     TOO_MANY_STEPS : 4

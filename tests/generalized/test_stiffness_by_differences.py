@@ -22,7 +22,7 @@ SYMMETRIC = np.array([[0.7, 0.1], [0.1, -0.3]])
 ROTATING = np.array([[0.7, 0.1], [-0.1, 0.3]])
 
 
-def pulls(k: np.ndarray, at: Any = (0.0, 0.0), beside: float = 0.0, cubic: float = 0.0) -> Callable[[Any], Any]:
+def pulls(k: np.ndarray, at: Any = (0.0, 0.0), beside: Any = 0.0, cubic: Any = 0.0) -> Callable[[Any], Any]:
     """−K (q − at) − c (q − at)³, rounded beside a force that cancels."""
 
     def forces(places: Any) -> Any:
@@ -43,6 +43,8 @@ def pulls(k: np.ndarray, at: Any = (0.0, 0.0), beside: float = 0.0, cubic: float
         ({"cubic": 1e6}, 3e-15),
         # Noise of 1e-16/h and 1e6 h² are both some 1e-9 at h = 5e-8: of six steps twice as much as they differ.
         ({"beside": 1.0, "cubic": 1e6}, 3e-8),
+        # Half of what one force is rounded by is in the mean of both: more than what the other is known to.
+        ({"beside": [1e3, 0.0]}, 1e-11),
     ],
 )
 @pytest.mark.parametrize("k", [SYMMETRIC, ROTATING], ids=["potential", "rotating"])
@@ -63,6 +65,43 @@ def test_what_a_place_is_off_is_of_the_stiffness_too() -> None:
     # Forces of 1e-3 (1 + 1e-6) over K (1 + 3e-6) come to 1 − 2e-6 of the way.
     assert found[0, 0] == pytest.approx(1.0 + 3e-6, rel=1e-12, abs=0.0)
     assert off[0, 0] == pytest.approx(3e-6 + 9e-6, rel=1e-5, abs=0.0)
+    # The others stay there what they are: roundings, of places near zero.
+    assert off[1, 1] < 3e-15
+    assert off[0, 1] == off[1, 0] == 0.0
+
+
+def test_one_that_is_bent_stops_no_other() -> None:
+    """A force is twice as stiff beyond 1e-6, which ends its steps there; of a straight one they go on to 0.1."""
+
+    def forces(q: Any) -> Any:
+        bent = np.sign(q[:, :1]) * np.maximum(np.abs(q[:, :1]) - 1e-6, 0.0)
+        return 1.0 - (q + bent * [1.0, 0.0]) - 1.0
+
+    found, off = by_differences(forces, np.zeros(2), SIZE, NOTHING_KNOWN)
+    assert (np.abs(found - np.eye(2)) <= off).all()
+    # Noise of 1e-16/h: at 1e-6 and at 0.1, a few times that.
+    assert 1e-11 < off[0, 0] < 1e-8
+    assert off[1, 1] < 1e-14
+
+
+def test_what_is_exact_is_known_to_roundings_of_the_places_at_which_it_was_found() -> None:
+    """Eight of K = 1, and of its place as a part of the farthest difference, 2 · 2⁻⁴ of its size: here none is seen."""
+    _, off = by_differences(pulls(np.eye(2), at=(1.0, -2.0)), np.array([1.0, -2.0]), np.ones(2), NOTHING_KNOWN)
+    epsilon = np.finfo(float).eps
+    # Of steps that are exact to a few roundings.
+    known_to = [8.0 * epsilon * (1.0 + place / 0.125) for place in (1.0, 2.0)]
+    assert np.diag(off) == pytest.approx(known_to, rel=1e-12, abs=0.0)
+
+
+def test_a_place_whose_next_to_it_has_no_forces_tells_nothing() -> None:
+    """Off its balance at 0 by 1e-3, no wall within a step of it, but one within as much again."""
+    known = np.eye(2), np.full((2, 2), 1e-3)
+    for side in (1.0, -1.0):
+        place = np.array([side * 1e-3, 0.0])
+        wall: Callable[[Any], Any] = lambda q, side=side: np.where(side * q > 1.5e-3, np.nan, -q)  # noqa: E731
+        assert by_differences(wall, place, np.full(2, 1e-3), known) is known
+        away = by_differences(pulls(np.eye(2)), place, np.full(2, 1e-3), known)
+        assert away[1].max() < 1e-3
 
 
 def test_what_is_known_better_stays_on_both_sides_of_the_diagonal() -> None:
@@ -104,3 +143,11 @@ def test_rounding_hides_what_is_level_by_its_share_of_the_stiffness_in_any_unit(
         # In balance a place may be level itself: then what is some way off tells the size.
         assert is_hidden(mass, (0.0 * k, k[None]), everywhere) is hidden
         assert is_hidden(mass, (0.0 * k, none), everywhere) is True
+
+
+def test_what_has_no_mass_is_measured_in_its_own_unit_and_what_has_by_its_root() -> None:
+    """K of 1 and 0.05; 2.2e-12 of the largest is the bound. A mass of 1/16 makes 16 times as much of the second."""
+    none, k, one = np.zeros((1, 2, 2)), np.diag([1.0, 0.05]), np.diag([0.0, 1.0])
+    for mass, least in ((0.0, 2.2e-12), (1.0 / 16.0, 1.4e-13)):
+        for rounding, hidden in ((0.8 * least, False), (1.25 * least, True)):
+            assert is_hidden(np.diag([1.0, mass]), (k, none), rounding * one) is hidden

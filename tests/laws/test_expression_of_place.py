@@ -57,11 +57,62 @@ def test_a_potential_of_place_and_time_has_the_time(name: str) -> None:
     assert out.velocity[-1, 0, 0] == pytest.approx(12.0, rel=4e-15, abs=0)
 
 
-def test_defaults_are_no_reason_to_take_a_function_otherwise() -> None:
-    """What can be called with place, velocity and time is: the third is the time, whatever it is called."""
+# Every one of them is V = −12 x, with 2 and 6 for what has a default; of those with the time V = −6 t x.
+KEPT: dict[str, Callable[..., Any]] = {
+    "place": lambda r, depth=2.0: -6.0 * depth * r[0],
+    "place and two": lambda r, depth=2.0, k=6.0: -depth * k * r[0],
+    "place and three": lambda r, depth=2.0, k=6.0, one=1.0: -depth * k * one * r[0],
+    "place and four": lambda r, depth=2.0, k=6.0, one=1.0, also=1.0: -depth * k * one * also * r[0],
+    "state": lambda r, v, t, depth=2.0, k=6.0: -depth * k * r[0],
+}
+OF_TIME: dict[str, Callable[..., Any]] = {
+    "place, time": lambda r, t, k=6.0: -k * t * r[0],
+    "place, time and two": lambda r, time, k=6.0, one=1.0: -k * one * time * r[0],
+    "a default of all": lambda r, t=0.0, k=6.0: -k * t * r[0],
+    "state": lambda r, v=None, t=0.0, k=6.0: -k * t * r[0],
+}
+
+
+@pytest.mark.parametrize("potential", KEPT.values(), ids=KEPT)
+def test_what_has_a_default_keeps_it(potential: Callable[..., Any]) -> None:
+    """x = 12 t²/2; the third of them was taken for the time before, and the second for the velocity."""
     stone = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
-    out = vv.Scene(stone, vv.ExpressionForce(potential=lambda r, v, s=1.0: -6.0 * s * r[0])).run(t=2.0)
+    for depth, parameters in ((2.0, None), (4.0, {"depth": 4.0})):
+        force = vv.ExpressionForce(potential=potential, parameters=parameters)
+        out = vv.Scene(stone, force).run(t=2.0)
+        # A polynomial, which a step has but for a few roundings.
+        assert out.position[-1, 0, 0] == pytest.approx(12.0 * depth, rel=4e-15, abs=0)
+
+
+@pytest.mark.parametrize("potential", OF_TIME.values(), ids=OF_TIME)
+def test_what_has_a_default_after_the_time_keeps_it(potential: Callable[..., Any]) -> None:
+    stone = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    out = vv.Scene(stone, vv.ExpressionForce(potential=potential)).run(t=2.0)
+    # x = t³, of a step likewise.
     assert out.position[-1, 0, 0] == pytest.approx(8.0, rel=4e-15, abs=0)
+
+
+def test_what_may_be_the_time_or_a_value_is_refused() -> None:
+    """Third of place and velocity, with a default and a name of its own: it was the time, whatever was meant."""
+    told = r"expected the time in the third place, f\(position, velocity, t\), got s=2.5 there.*f\(.*, t, s=2.5\)"
+    with pytest.raises(vv.InvalidInput, match=rf"^potential: {told}"):
+        vv.ExpressionForce(potential=lambda r, v, s=2.5: -6.0 * s * r[0])
+    with pytest.raises(vv.InvalidInput, match=rf"^force: {told}"):
+        vv.ExpressionForce(force=lambda r, v, s=2.5: -s * r)
+    with pytest.raises(vv.InvalidInput, match=rf"^acceleration: {told}"):
+        vv.ExpressionForce(acceleration=lambda r, v, s=2.5: -s * r)
+    with pytest.raises(vv.InvalidInput, match=r"^L: expected the time in the third place.*got m=2.5 there"):
+        vv.Lagrangian(lambda q, v, m=2.5: m * v[0] ** 2 / 2, ["q"], position=[1.0])
+    with pytest.raises(vv.InvalidInput, match=r"^H: expected the time in the third place.*got m=2.5 there"):
+        vv.Hamiltonian(lambda q, p, m=2.5: p[0] ** 2 / m / 2, ["q"], position=[1.0], momentum=[1.0])
+
+
+def test_coordinates_with_defaults_are_no_values() -> None:
+    """Of V(x, y=0), with the place for x, y stood at 0."""
+    with pytest.raises(vv.InvalidInput, match=r"^potential: .*x and y are one argument"):
+        vv.ExpressionForce(potential=lambda x, y=0.0: x[0] ** 2 + y**2)
+    with pytest.raises(vv.InvalidInput, match=r"^potential: .*x and y are one argument"):
+        vv.ExpressionForce(potential=lambda x, y=0.0, z=0.0: x[0] ** 2 + y**2 + z**2)
 
 
 def test_copies_have_parameters_of_their_own() -> None:
@@ -108,6 +159,7 @@ def test_what_fails_in_a_potential_of_the_place_is_told_by_its_name() -> None:
         lambda r, k, t=0.0: -k * t * r[0],
         lambda r, k=6.0, *, t=1.0: -k * t * r[0],
         lambda r, *, time=1.0, k=6.0: -k * time * r[0],
+        lambda r, depth=1.0, t=1.0, k=6.0: -k * depth * t * r[0],
     ],
 )
 def test_a_time_that_would_stand_still_is_refused(potential: Any) -> None:

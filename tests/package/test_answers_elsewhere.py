@@ -173,38 +173,6 @@ def test_attributes_of_results_are_answered(of: Any, name: str, there: str) -> N
         getattr(of, name)
 
 
-HOLDERS: list[tuple[object, dict[str, str]]] = [
-    (RUN, _attributes_elsewhere.OF_RUNS),
-    (RUN.events, _attributes_elsewhere.OF_TABLES),
-    (RUN.scene.particles, _attributes_elsewhere.OF_PARTICLES),
-    (BODY, _attributes_elsewhere.OF_BODIES),
-    (vv.rigid.box(1.0, 1.0, 2.0, 3.0), _attributes_elsewhere.OF_SOLIDS),
-    (vv.rigid.HeavyTop(A=1.0, C=0.5, mass=1.0, g=9.8, R=0.5), _attributes_elsewhere.OF_TOPS),
-    (
-        vv.scattering.deflect(vv.potentials.Coulomb(1.0), energy=1.0, impact_parameter=1.0),
-        _attributes_elsewhere.OF_DEFLECTIONS,
-    ),
-    (vv.potentials.Yukawa(1.0, 2.0), _attributes_elsewhere.OF_POTENTIALS),
-    (SWING.system, _attributes_elsewhere.OF_SYSTEMS),
-]
-# What is no attribute: an expression, or what is known elsewhere.
-NO_ATTRIBUTE = ("vv.", "np.", "len(", "known of ", "a scene ")
-
-
-@pytest.mark.parametrize(("of", "answers"), HOLDERS, ids=[type(of).__name__ for of, _ in HOLDERS])
-def test_what_is_told_of_an_attribute_is_there_and_the_attribute_is_not(of: object, answers: dict[str, str]) -> None:
-    turning = vv.Scene(BODY).run(t=0.0)
-    known = (RUN, turning, SWING) if of is RUN else (of, vv.systems.henon_heiles()) if of is SWING.system else (of,)
-    for name, told in answers.items():
-        assert not hasattr(of, name)
-        first = re.match(r"\w+", told)
-        assert first
-        assert told.startswith(NO_ATTRIBUTE) or any(first[0] in dir(each) for each in known)
-        if told.startswith(NO_ATTRIBUTE) or hasattr(type(of), first[0]):
-            with pytest.raises(AttributeError, match=rf"has no attribute '{name}'; it is {re.escape(told)}$"):
-                getattr(of, name)
-
-
 def test_objects_that_answer_are_copied_and_pickled() -> None:
     for of in (RUN.scene.particles, RUN.events, BODY, vv.rigid.sphere(1.0, 1.0), vv.potentials.Yukawa(1.0, 2.0)):
         assert type(copy.deepcopy(of)) is type(of)

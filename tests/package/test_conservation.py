@@ -35,7 +35,27 @@ def test_drift_of_a_made_up_motion() -> None:
     assert (table.center_of_mass.max, table.center_of_mass.end) == (1.0, 0.5)
     # Distances 0, 2, 1 against t − 1 = −1, 0, 1.
     assert table.momentum.slope == pytest.approx((0 * -1 + 2 * 0 + 1 * 1) / 2, rel=1e-6, abs=0)
+    # 0, 8, 3 likewise.
+    assert table.energy.slope == pytest.approx(3 / 2, rel=1e-14, abs=0)
     assert all(row.conserved for row in table.rows)
+
+
+@pytest.mark.parametrize("mass", [1.0, 0.125, 2.0**-700])
+@pytest.mark.parametrize("span", [2.0, 0.5])
+def test_drifts_are_parts_of_what_there_is_however_little_that_is(mass: float, span: float) -> None:
+    """A momentum of m that becomes 3 m and 2 m; the last row is of a run that did not come so far."""
+    scene = vv.Scene(vv.Particles([mass], [[0.0, 3.0, 0.0]], [[1.0, 0.0, 0.0]]))
+    t = np.array([0.0, 0.25, 0.5, 1.0]) * span
+    velocity = np.array([1.0, 3.0, 2.0, np.nan])[:, None, None] * np.array([[[1.0, 0.0, 0.0]]])
+    table = made(scene, t, np.zeros((4, 1, 3)) + velocity * 0.0, velocity).conservation()
+    # All but the slope and the root of the mean square are exact: powers of two and small whole numbers.
+    assert (table.momentum.scale, table.momentum.max, table.momentum.end) == (mass, 2.0, 1.0)
+    assert (table.energy.scale, table.energy.max, table.energy.end) == (mass / 2.0, 8.0, 3.0)
+    assert table.momentum.rms == pytest.approx(np.sqrt(5 / 3), rel=1e-15, abs=0)
+    # Distances 0, 2, 1 at −1/4, 0, 1/4 of the span from their middle.
+    assert table.momentum.slope == pytest.approx(1 / (0.5 * span), rel=1e-14, abs=0)
+    at_once = scene.run(t=[0.0]).conservation().momentum
+    assert (at_once.max, at_once.slope) == (0.0, 0.0)
 
 
 def test_table_prints_every_row() -> None:

@@ -68,3 +68,20 @@ def test_a_momentum_whose_scale_is_beyond_float64_has_no_drift_of_zero() -> None
     )
     row = vv.Scene(bodies).run(t=[0.0, 1.0]).conservation()["momentum"]
     assert np.isnan([row.max, row.end]).all()
+
+
+def test_the_energy_of_the_center_of_mass_is_known_where_the_square_of_the_momentum_is_not() -> None:
+    """P²/2M of a momentum of 1.5e200 and a mass of 3e200: 3.75e199, without 2.25e400 on the way."""
+    bodies = vv.Particles([1e200, 2e200], [[0.0, 0, 0], [1.0, 0, 0]], [[0.5, 0, 0], [0.5, 0, 0]])
+    told = vv.Scene(bodies).invariants()
+    # A few products, of numbers that are no powers of two.
+    assert told.center_of_mass_kinetic_energy == pytest.approx(3.75e199, rel=1e-15, abs=0.0)
+    assert told.internal_kinetic_energy == pytest.approx(0.0, rel=0.0, abs=1e-31 * 3.75e199)
+
+
+def test_a_torque_beyond_float64_is_not_known() -> None:
+    """1e160 at an arm of 1 in a field of 1e150, beside a body of 1: the torque about y is no number, that about z is 0."""
+    bodies = vv.Particles([1e160, 1.0], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
+    told = vv.Scene(bodies, vv.UniformField([0.0, 0.0, -1e150])).invariants(about=[0.0, 0.0, 0.0]).torque
+    assert np.isnan(told[1])
+    assert told[2] == 0.0

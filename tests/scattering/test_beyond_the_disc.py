@@ -12,7 +12,7 @@ import pytest
 
 import visviva as vv
 from visviva import _core
-from visviva.scattering._beyond import beyond
+from visviva.scattering._beyond import beyond, less_what_is_beyond
 
 p = vv.potentials
 ARGON = p.LennardJones(1.0, 1.0)
@@ -124,6 +124,15 @@ def test_where_angles_fall_beyond_the_disc_nothing_changes(potential: Any, b_max
         assert tally.covered == covered
 
 
+def test_a_disc_whose_edge_turns_back_and_farther_hides_none_beyond_it() -> None:
+    """ψ at the edge is below −π, as it is on both sides of what circles, beyond it."""
+    b = np.linspace(1.6, 1.8, 20_001)
+    psi = vv.scattering.deflection_angle(ARGON, energy=0.8, impact_parameter=b)
+    edge = b[np.argmax(psi < -1.1 * np.pi)]
+    assert psi[np.argmax(b > edge) :].min() < -2.0 * np.pi
+    assert beyond(run(1.0, float(edge), "cm_angle", n_events=10).beam) == {}
+
+
 def test_of_several_energies_what_one_hides_is_not_told() -> None:
     """A rainbow of the second energy, orbits of the first, a disc that ends between and beyond both."""
     lines = vv.scattering.Spectrum([1.0, 3.0], [0.5, 0.5])
@@ -162,6 +171,40 @@ def test_of_a_gaussian_the_slowest_is_six_deviations_down() -> None:
     # What all energies of the beam know is what the slowest does, but for a cell of a table: a twentieth of the angle.
     low, high = result["cm_angle"].covered
     assert (greatest <= low <= 1.05 * greatest, high) == (True, np.pi)
+
+
+@pytest.mark.parametrize("masses", [(1.0, 4.0), (3.0, 2.0)])
+@pytest.mark.parametrize("b_max", [0.8, 1.2])
+@pytest.mark.parametrize(
+    ("spread", "reach"),
+    # A Gaussian ends at six standard deviations.
+    [(None, 0.0), (vv.scattering.Spread.uniform(0.1), 0.1), (vv.scattering.Spread.gaussian(0.05), 0.3)],
+)
+def test_what_an_angle_hides_is_all_up_to_it(
+    masses: tuple[float, float], b_max: float, spread: Any, reach: float
+) -> None:
+    """Up to an angle χ nothing is known, nor up to a recoil of Λ E sin²(χ/2), of the greatest of the energies E."""
+    energy, names = 3.0, ("cm_angle", "recoil_energy")
+    result = run(energy, b_max, names, masses=masses, energy_spread=spread, n_events=10, bins=64)
+    axes = [(name, result[name].edges) for name in names]
+    for angle in (0.5, 1.5):
+        recoil = 4.0 * masses[0] * masses[1] / sum(masses) ** 2 * (energy + reach) * np.sin(0.5 * angle) ** 2
+
+        def left(low: float, high: float, angle: float = angle) -> Any:
+            told = [(np.full(64, 0.25), (low, high)) for _ in names]
+            return less_what_is_beyond(result.beam, axes, told, {energy: angle})
+
+        ends = ((angle, np.pi), (recoil, energy + reach))
+        for (parts, (low, high)), (_, edges), (least, most) in zip(left(0.0, 100.0), axes, ends, strict=True):
+            # A tangent, its inverse, and some products.
+            assert low == pytest.approx(least, rel=2e-15, abs=0.0)
+            assert high == pytest.approx(most, rel=2e-15, abs=0.0)
+            # Where both know something, of the disc what there was.
+            assert parts.tolist() == np.where(edges[:-1] >= least, 0.25, 0.0).tolist()
+        lows = [reached[1][0] for reached in left(0.0, 100.0)]
+        # What was known less far, or not so low, stays that; and what then is nothing is told as that.
+        assert [reached[1] for reached in left(2.0, 2.5)] == [(2.0, 2.5)] * 2
+        assert [reached[1] for reached in left(0.0, min(lows))] == [(0.0, 0.0)] * 2
 
 
 def test_of_a_spread_that_has_no_tables_orbits_beyond_the_disc_are_known() -> None:

@@ -203,10 +203,10 @@ def _arguments(function: Callable[..., Any]) -> list[Parameter]:
         return []
 
 
-def placed_arguments(function: Callable[..., Any]) -> list[str]:
-    """Give the names of what a function takes by its place; none of one that does not tell."""
+def placed_arguments(function: Callable[..., Any]) -> list[Parameter]:
+    """Give what a function takes by its place, in that order; none of one that does not tell, as some in C do not."""
     by_place = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
-    return [each.name for each in _arguments(function) if each.kind in by_place]
+    return [each for each in _arguments(function) if each.kind in by_place]
 
 
 def refuse_other_arguments(
@@ -219,7 +219,8 @@ def refuse_other_arguments(
     InvalidInput
         By the name of the argument.
     """
-    taken, placed = _arguments(function), placed_arguments(function)
+    taken, by_place = _arguments(function), placed_arguments(function)
+    placed = [each.name for each in by_place]
     if placed[:1] == ["t"] and "t" not in placed[1:]:
         raise InvalidInput(
             argument,
@@ -232,6 +233,15 @@ def refuse_other_arguments(
             f"expected a function f(position, {second_name}, t), got f({', '.join(placed)}): x and y are one argument, "
             f"whose parts are position[0] and position[1]",
         )
+    for each in by_place[2:3]:
+        # Of parameters by that name `check_call` tells.
+        is_time = each.name in ("t", "time", "_t", "_time", "_") or each.default is Parameter.empty
+        if not is_time and each.name not in parameters:
+            raise InvalidInput(
+                argument,
+                f"expected the time in the third place, f(position, {second_name}, t), got {each} there; if it is the "
+                f"time call it t, if not write f(position, {second_name}, t, {each})",
+            )
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
     needed = [each.name for each in taken if each.default is Parameter.empty and each.kind in named]
     for name in needed:
