@@ -137,3 +137,33 @@ def test_a_pole_is_told_by_what_it_does_and_not_as_unseen() -> None:
     with pytest.warns(vv.AccuracyWarning):
         out = scene.run(2.0, method="rk4", dt=0.1)
     assert out.status == vv.Status.OK
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "rk4"])
+def test_rigid_bodies_end_before_a_wall_as_points_do(method: str) -> None:
+    body = vv.RigidBody(
+        mass=1.0, moments=[1.0, 2.0, 3.0], position=[0.0] * 3, velocity=[1.0, 0, 0], angular_velocity=[0.3, 0.2, 0.1]
+    )
+    narrow = vv.ExpressionForce(potential=lambda r, v, t: WALLS["gauss"]((r[0] - PLACE) / 1e-3))
+    out = stopped(vv.Scene([body], narrow, vv.AppliedTorque([0.0, 0.0, 0.01], body=0)), method=method, dt=DT)
+    assert out.final.t0 == pytest.approx(int(PLACE / DT) * DT, rel=0.0, abs=1e-12)
+
+
+def test_steps_of_a_transformed_time_cannot_be_shorter_either() -> None:
+    body = vv.Particles([1.0], [[0.3, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
+    pull = vv.CentralField(vv.potentials.Plummer(1e-2, 0.5))
+    narrow = vv.ExpressionForce(potential=lambda r, v, t: WALLS["gauss"]((r[0] - PLACE) / 1e-3))
+    how = {"method": "leapfrog", "dt": 0.02, "time_transformation": "distance"}
+    out = stopped(vv.Scene(body, pull, narrow), **how)
+    assert PLACE - 10.0 < out.final.particles.position[0, 0] < PLACE
+    without = vv.Scene(body, pull).run(100.0, **how)
+    assert without.position[-1, 0, 0] > 80.0
+
+
+def test_spheres_that_may_touch_end_before_a_wall() -> None:
+    spheres = vv.Particles([1.0, 1.0], [[0.0, 0, 0], [20.0, 0, 0]], [[1.0, 0, 0], [0.0, 0, 0]], radius=[0.5, 0.5])
+    narrow = vv.ExpressionForce(potential=lambda r, v, t: WALLS["gauss"]((r[0] - PLACE) / 1e-3))
+    # The first gives all of its velocity to the second, which goes on 1 ahead of where the first would be.
+    out = stopped(vv.Scene(spheres, narrow), method="leapfrog", dt=DT, collisions="bounce", restitution=1.0)
+    assert out.final.particles.position[:, 0] == pytest.approx([19.0, PLACE], rel=0.0, abs=DT)
+    assert out.final.particles.position[1, 0] < PLACE

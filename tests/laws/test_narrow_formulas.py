@@ -164,3 +164,46 @@ def test_walls_go_along_with_a_scene_that_is_rescaled_and_stand_there_backward_i
     assert out.velocity[-1, 0, 0] * 2.0**27 == pytest.approx(-1.0, rel=0.0, abs=4e-8)
     behind = vv.Scene(vv.Particles([1.0], [[100.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]), wall("gauss", 1e-4))
     assert behind.run(t=-100.0).velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=4e-8)
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "verner98", "taylor"])
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 1e-5])
+def test_massless_bodies_turn_back_that_follow_massive_ones(width: float, method: str) -> None:
+    # One whose pull is nothing, far behind; 40 of no mass, some of which the wall does not act on.
+    bodies = vv.Particles(
+        [1e-9, *[0.0] * 40],
+        [[-1e3, 0.0, 0.0], *([0.0, place, 0.0] for place in range(40))],
+        [[0.0, 0.0, 0.0], *[[1.0, 0.0, 0.0]] * 40],
+    )
+
+    def push(r: Any, v: Any, t: Any) -> tuple[Any, Any, Any]:
+        u = (r[0] - PLACE) / width
+        return 10.0 * u / width * np.exp(-(u**2)), 0.0 * t, 0.0 * t
+
+    scene = vv.Scene(bodies, vv.Gravity(1.0), vv.ExpressionForce(acceleration=push, bodies=list(range(1, 31))))
+    out = scene.run(t=100.0, method=method, rtol=1e-8)
+    velocity = out.velocity[-1, 1:, 0]
+    # Of the pull of 1e-9 from 1e3 away in 100 units of time 1e-13; of the tolerance as above.
+    np.testing.assert_allclose(velocity[:30], -1.0, rtol=0.0, atol=4e-8)
+    np.testing.assert_allclose(velocity[30:], 1.0, rtol=0.0, atol=1e-12)
+
+
+def rigid(width: float) -> vv.Scene:
+    body = vv.RigidBody(
+        mass=1.0,
+        moments=[1.0, 2.0, 3.0],
+        position=[0.0] * 3,
+        velocity=[1.0, 0.0, 0.0],
+        angular_velocity=[0.3, 0.2, 0.1],
+    )
+    return vv.Scene([body], wall("gauss", width), vv.AppliedTorque([0.0, 0.0, 0.01], body=0))
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "taylor"])
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 1e-5])
+def test_rigid_bodies_that_torques_turn_do_so_too(width: float, method: str) -> None:
+    out = rigid(width).run(t=100.0, method=method, rtol=1e-8)
+    assert out.velocity[-1, 0, 0] == pytest.approx(-1.0, rel=0.0, abs=4e-8)
+    # The wall, which acts on the center, turns nothing.
+    free = rigid(1.0).run(t=100.0, method=method, rtol=1e-8)
+    assert out.angular_velocity[-1] == pytest.approx(free.angular_velocity[-1], rel=0.0, abs=1e-6)

@@ -102,6 +102,33 @@ impl<'a, S: Element> Taken<'a, S> {
     pub fn from_end_to_end(asked: S::Mask, (from, h): (S, S), ends: [&'a [S]; 2]) -> Self {
         Self { asked, from, h, ends, rates: None, nodes: &[], series: false, visited: None }
     }
+
+    /// Asks the first `numbers` of each half of the state, which are a system of the second order of their own.
+    ///
+    /// # Errors
+    /// As [`System::seen_until`].
+    pub fn ask_first_of_halves(&self, numbers: usize, system: &mut dyn System<S>) -> Result<Option<S>> {
+        let ends = self.ends.map(|state| first_of_halves(state, numbers));
+        let accelerations = |rates: &[S]| rates[rates.len() / 2..][..numbers].to_vec();
+        let rates = self.rates.map(|rates| rates.map(accelerations));
+        let visited = |lane: usize| -> Visited {
+            let whole = self.visited.map(|visited| visited(lane)).unwrap_or_default();
+            whole.into_iter().map(|(place, state)| (place, first_of_halves(&state, numbers))).collect()
+        };
+        let step = Taken {
+            ends: [&ends[0], &ends[1]],
+            rates: rates.as_ref().map(|[first, last]| [&first[..], &last[..]]),
+            visited: self.visited.map(|_| &visited as &dyn Fn(usize) -> Visited),
+            ..*self
+        };
+        system.seen_until(&step)
+    }
+}
+
+/// The first numbers of each half of a state.
+fn first_of_halves<T: Copy>(state: &[T], numbers: usize) -> Vec<T> {
+    let (first, second) = state.split_at(state.len() / 2);
+    [&first[..numbers], &second[..numbers]].concat()
 }
 
 /// A system of ordinary differential equations, of one trajectory or of eight in lanes. Times are counted from the start

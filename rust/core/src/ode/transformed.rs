@@ -14,7 +14,7 @@ use super::passes::transformed::{Carry, Drift, Lasting, Shares};
 use super::passes::updates::{Advance, Finite, Product};
 use super::state::State;
 use super::step_control::{Clock, Controlled, Passing, Settled};
-use super::system::System;
+use super::system::{System, Taken};
 use super::transformation::{Monitor, Transformation};
 use super::trial::{Cost, Trial};
 use crate::error::{Error, Result};
@@ -205,6 +205,8 @@ pub struct Transformed<S> {
     /// How long the last step is, also where the end comes before its own, and W at both of its ends.
     length: S,
     weights: [S; 2],
+    /// The parts of the step up to which nothing lies unseen in it, if something does.
+    seen: Option<S>,
     /// Evaluations of a step, and whether its first is the last of the one before it.
     evaluations: u64,
     shared: bool,
@@ -241,6 +243,7 @@ impl<S: Controlled> Transformed<S> {
             beside,
             length: zero,
             weights: [zero; 2],
+            seen: None,
             evaluations: kicks - u64::from(shared),
             shared,
         }
@@ -341,6 +344,10 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         if self.moves.together {
             finite = S::Mask::splat(finite.all());
         }
+        let ends = [state.all().0, self.next.0.all().0];
+        let step = Taken::from_end_to_end(outcome.accepted.and(finite), (from, outcome.h), ends);
+        self.seen = system.seen_until(&step)?;
+        finite = finite.and(self.passed_over().not());
         let lost = outcome.accepted.and(finite.not());
         clock.elapsed = S::select(lost, before.elapsed, clock.elapsed);
         outcome.accepted = outcome.accepted.and(finite);
@@ -365,6 +372,10 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         self.meet(theta * outcome.h, outcome.from, state, system, ticker)?;
         into.copy_from(&self.between.0);
         Ok(())
+    }
+
+    fn passed_over(&self) -> S::Mask {
+        self.seen.map_or(S::Mask::splat(false), |seen| seen.less(S::one()))
     }
 
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {

@@ -14,6 +14,7 @@ use super::step_control::{Clock, Controlled, Settled};
 use super::system::System;
 use super::taylor::TaylorStep;
 use crate::error::{Error, Result};
+use crate::numerics::real::Mask;
 use crate::parallel::Ticker;
 
 /// Evaluations that a step costs.
@@ -117,6 +118,11 @@ pub trait Trial<S: Controlled>: Send {
     /// How many terms the continuous extension has.
     fn terms(&self) -> usize {
         0
+    }
+
+    /// The lanes whose step, which cannot be shorter, went over something unseen; it is not accepted.
+    fn passed_over(&self) -> S::Mask {
+        S::Mask::splat(false)
     }
 
     /// Moves the accepted lanes to the end of their step.

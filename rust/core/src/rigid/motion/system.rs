@@ -17,7 +17,7 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
-use crate::ode::system::{Form, Needs, System};
+use crate::ode::system::{Form, Needs, System, Taken};
 use crate::parallel::Ticker;
 
 /// Points and bodies; a state is coordinates and quaternions, then velocities and momenta.
@@ -28,6 +28,8 @@ pub struct BodySystem {
     at: State<Lanes>,
     /// The same as series, for a method that asks for them.
     series: Option<Box<dyn Expand>>,
+    /// Whether something may be unseen by the points.
+    looks: bool,
 }
 
 impl BodySystem {
@@ -37,7 +39,14 @@ impl BodySystem {
         (arrangement, loads): (Arrangement, Loads),
         state: &State<Lanes>,
     ) -> Self {
-        Self { points, pulls: Pulls::new(arrangement, loads, 0.0), at: state.clone(), series: None }
+        let pulls = Pulls::new(arrangement, loads, 0.0);
+        Self { points, pulls, at: state.clone(), series: None, looks: false }
+    }
+
+    /// Whose points may pass over something unseen, or not.
+    #[must_use]
+    pub fn looking(self, looks: bool) -> Self {
+        Self { looks, ..self }
     }
 
     /// With its series, if it has some.
@@ -90,6 +99,13 @@ impl System<Lanes> for BodySystem {
 
     fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
         self.series.as_ref().and_then(|series| series.smooth_until(jet, h, &*self.points))
+    }
+
+    fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
+        if !self.looks {
+            return Ok(None);
+        }
+        step.ask_first_of_halves(self.pulls.arrangement.points(), &mut *self.points)
     }
 
     fn settle(&self, state: &mut State<Lanes>) {

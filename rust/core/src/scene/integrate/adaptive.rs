@@ -124,7 +124,8 @@ impl Forces {
         let Some(assembly) = unit::assembled(job.plan, job.scene, units) else {
             return Ok(Self::Own(dynamics));
         };
-        let bodies = BodySystem::new(Box::new(dynamics), assembly, &units[0].blank_state(1));
+        let bodies = BodySystem::new(Box::new(dynamics), assembly, &units[0].blank_state(1))
+            .looking(job.plan.has_narrow());
         if !matches!(job.plan.method.scheme, Scheme::Taylor(_)) {
             return Ok(Self::Turning(Box::new(bodies)));
         }

@@ -36,9 +36,12 @@ impl Plan {
 
     /// Whether steps of a given length may pass over what is narrower than they are.
     pub fn passes_over(&self) -> bool {
-        !self.has_own_times()
-            && !self.turning.steps()
-            && self.forces.iter().any(|force| force.may_be_narrow())
+        !self.has_own_times() && self.has_narrow()
+    }
+
+    /// Whether something in the forces may be narrower than a step.
+    pub fn has_narrow(&self) -> bool {
+        self.forces.iter().any(|force| force.may_be_narrow())
     }
 
     /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the

@@ -53,7 +53,7 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
         units: plan.units,
         t0: plan.t0,
         threads: 1,
-        equal_steps: !plan.has_own_times(),
+        equal_steps: !plan.method.adaptive(),
     };
     let expands = matches!(plan.method.scheme, Scheme::Taylor(_));
     let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
@@ -83,7 +83,7 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         units: plan.units,
         t0: plan.t0,
         threads,
-        equal_steps: !plan.has_own_times(),
+        equal_steps: !plan.method.adaptive(),
     };
     if let (true, Some(few)) = (plan.relative, few_bodies(&context)) {
         return Dynamics::closed(few);

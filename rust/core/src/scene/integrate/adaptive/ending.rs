@@ -50,6 +50,8 @@ impl<'a> Run<'a> {
         } else if outcome.finished.lane(lane) {
             self.part.arrived = self.part.arrived.or(self.layout.mask(lane));
             return;
+        } else if self.trial.passed_over().lane(lane) {
+            Ending::PassedOver
         } else if let Some(body) = undefined {
             Ending::Undefined { body }
         } else if outcome.stuck.lane(lane) {

@@ -15,7 +15,7 @@ use crate::numerics::real::Real;
 use crate::ode::Scheme;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
-use crate::ode::system::{Form, Needs, System};
+use crate::ode::system::{Form, Needs, System, Taken};
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -353,6 +353,18 @@ impl System<Lanes> for Guided {
     fn expand(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         self.expand_series(jet, ticker)
+    }
+
+    fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
+        let step = Taken { from: self.base + step.from, ..*step };
+        let mut until: Option<Lanes> = None;
+        for term in &mut self.terms {
+            let Term::Other(force, _) = term else { continue };
+            if let Some(seen) = force.seen_until(&step)? {
+                until = Some(until.map_or(seen, |until| until.min(seen)));
+            }
+        }
+        Ok(until)
     }
 }
 

@@ -51,7 +51,12 @@ impl PassedOver {
         }
         let (times, ends) = ((Lanes::splat(from), Lanes::splat(h)), [before.all().0, after.all().0]);
         let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(Bits(0xff), times, ends) };
-        let seen = system.seen_until(&taken)?;
+        let points = system.form().evaluated();
+        let seen = if before.q().len() > points {
+            taken.ask_first_of_halves(points, system)?
+        } else {
+            system.seen_until(&taken)?
+        };
         Ok(seen.map_or(Bits(0), |seen| seen.less(Lanes::one())))
     }
 
