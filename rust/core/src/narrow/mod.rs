@@ -21,7 +21,7 @@ use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
 use ends::Ends;
 pub use features::{Equations, Features};
-use search::Search;
+use search::{Asked, Search};
 use std::sync::Arc;
 use way::Way;
 use weak::Weak;
@@ -132,7 +132,9 @@ impl<S: Width + Controlled> Narrow<S> {
             return self.followed(step);
         }
         let gap = self.gap(step);
-        let moves_little = (self.fastest * step.h.abs()).less_equal(S::splat(self.reach(step) / gap));
+        // Of waves in equal steps two looks are asked for in a turn.
+        let reach = if self.equal { SHARE * self.reach(step) } else { self.reach(step) };
+        let moves_little = (self.fastest * step.h.abs()).less_equal(S::splat(reach / gap));
         let asked = step.asked.and(moves_little.not());
         if asked.any() { self.followed(&Taken { asked, ..*step }) } else { Ok(None) }
     }
@@ -140,11 +142,12 @@ impl<S: Width + Controlled> Narrow<S> {
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let little = (SHARE * self.reach(step), self.gap(step));
+        let asked = Asked { reach: self.reach(step), equal: self.equal, tolerance: self.tolerance };
         let Some(told) = self.ends.tell(step, self.t0, little, &self.of.at_ends) else { return Ok(None) };
         let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
         for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
             let parameters: Vec<f64> = self.parameters.iter().map(|value| value.lane(lane)).collect();
-            let (of, reach) = (&self.of, self.reach(step));
+            let of = &self.of;
             let weak = self.weak.get_or_insert_with(|| Weak::new(of));
             if weak.holds(
                 &parameters,
@@ -156,7 +159,7 @@ impl<S: Width + Controlled> Narrow<S> {
             }
             let way = Way::of(self.form, step, lane, self.t0);
             let search = self.search.get_or_insert_with(|| Search::new(of));
-            let part = search.seen_until(&parameters, way, (reach, self.equal), self.tolerance);
+            let part = search.seen_until(&parameters, way, asked);
             seen = seen.with_lane(lane, part);
         }
         if !seen.less(S::one()).any() {

@@ -6,10 +6,11 @@
 //! it pushes, it may stay so.
 
 use super::Features;
-use super::features::AtEnds;
+use super::features::{AtEnds, Fades};
 use super::way::Way;
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use core::f64::consts::PI;
 use std::sync::Arc;
 
 /// Between two places where a method looks arguments are sampled at least twice, and so densely.
@@ -33,6 +34,17 @@ const LEAST: f64 = 1.0 / 16.0;
 const MOST: f64 = 0.9;
 /// Of a number that is small beside others this part of them is its size.
 const SMALLEST_SIZE: f64 = 1e-8;
+
+/// What is asked of a way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// By how much an argument moves that is followed: of a wave in equal steps half a turn, which two looks tell from none.
+    pub(super) reach: f64,
+    /// Whether steps are equal: they are not to be shorter, and what they see too coarsely is not unseen.
+    pub(super) equal: bool,
+    /// What may be unseen, as a part of a number.
+    pub(super) tolerance: f64,
+}
 
 /// A place on the way, and an argument there.
 #[derive(Clone, Copy, Debug)]
@@ -79,15 +91,8 @@ impl Search {
         }
     }
 
-    /// The part of a way on which nothing that matters is unseen, short of what is. Arguments are followed that move by more than a
-    /// reach, in steps that are equal or not.
-    pub(super) fn seen_until(
-        &mut self,
-        parameters: &[f64],
-        way: Way,
-        asked: (f64, bool),
-        tolerance: f64,
-    ) -> f64 {
+    /// The part of a way on which nothing that matters is unseen, short of what is.
+    pub(super) fn seen_until(&mut self, parameters: &[f64], way: Way, asked: Asked) -> f64 {
         if self.parameters != parameters {
             let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             self.values.set_parameters(&wide);
@@ -96,13 +101,13 @@ impl Search {
         }
         let mut pieces = self.pieces(&way, asked);
         pieces.sort_by(|a, b| a.from.theta.total_cmp(&b.from.theta));
-        let sizes = sizes(&way, self.of.rates.outputs(), asked.1);
+        let sizes = sizes(&way, self.of.rates.outputs());
         let mut first = f64::INFINITY;
         for piece in pieces {
             if piece.from.theta >= first {
                 break;
             }
-            if let Some(theta) = self.unseen(&way, &piece, &sizes, tolerance)
+            if let Some(theta) = self.unseen(&way, &piece, &sizes, asked)
                 && theta < first
             {
                 first = theta;
@@ -125,7 +130,7 @@ impl Search {
 
     /// The pieces of the way on which arguments move by more than the reach between two places where the method looks. Equal steps
     /// that go through poles tell more than that something was unseen.
-    fn pieces(&mut self, way: &Way, (reach, equal): (f64, bool)) -> Vec<Piece> {
+    fn pieces(&mut self, way: &Way, Asked { reach, equal, .. }: Asked) -> Vec<Piece> {
         let mut places = vec![0.0];
         for looks in way.nodes.windows(2) {
             let parts = ((looks[1] - looks[0]) / SPACING).ceil().max(2.0);
@@ -167,7 +172,8 @@ impl Search {
                 points.sort_by(|a, b| a.theta.total_cmp(&b.theta));
                 let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
                 let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
-                let reach = at_ends.reach(reach);
+                let is_wave = self.of.fades[argument] == Fades::Nowhere;
+                let reach = at_ends.reach(if equal && is_wave { PI } else { reach });
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }
@@ -207,7 +213,7 @@ impl Search {
     }
 
     /// The first place of a piece at which what no look sees matters.
-    fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], tolerance: f64) -> Option<f64> {
+    fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], asked: Asked) -> Option<f64> {
         let levels = levels(piece.from.u, piece.to.u);
         let looks = self.functions_at(way, &lanes(&piece.looks));
         let mut last = piece.from;
@@ -218,7 +224,7 @@ impl Search {
             if (index + 1) * AT_ONCE >= levels.len() {
                 points.push(piece.to);
             }
-            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, tolerance)) {
+            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, asked)) {
                 return Some(theta);
             }
             last = points[points.len() - 1];
@@ -232,7 +238,7 @@ impl Search {
         way: &Way,
         piece: &Piece,
         (looks, points): (&[Lanes], &[Point]),
-        (sizes, tolerance): (&[f64], f64),
+        (sizes, Asked { tolerance, equal, .. }): (&[f64], Asked),
     ) -> Option<f64> {
         let thetas: Vec<f64> = points.iter().map(|point| point.theta).collect();
         let thetas = lanes(&thetas);
@@ -253,15 +259,19 @@ impl Search {
             if moved > 1.0 { time / moved } else { time }
         };
         let gaps: Vec<f64> = points.windows(2).map(apart).collect();
+        let climbs = equal && self.of.fades[piece.argument] != Fades::Nowhere;
         let matters = |k: &usize| {
             let after = gaps.get(*k).copied().unwrap_or(0.0);
             let before = if *k > 0 { gaps[*k - 1] } else { 0.0 };
             let time = way.h.abs() * before.max(after);
             actual.iter().enumerate().any(|(i, rate)| {
                 let apart = |side: usize| (rate.0[*k] - frozen[side][i].0[*k]).abs();
-                let impulse = smaller(apart(0), apart(1)) * time;
+                let least = smaller(apart(0), apart(1));
+                // Between two looks what rises, or falls, to what either of them sees is a far end of something wide.
+                let is_between = climbs && least <= (frozen[0][i].0[*k] - frozen[1][i].0[*k]).abs();
+                let impulse = least * time;
                 // What is no number matters.
-                impulse.is_nan() || impulse > tolerance * sizes[i]
+                impulse.is_nan() || (impulse > tolerance * sizes[i] && !is_between)
             })
         };
         (0..points.len()).find(matters).map(|k| points[k].theta)
@@ -340,14 +350,11 @@ fn levels(from: f64, to: f64) -> Vec<f64> {
     levels
 }
 
-/// How large the numbers are that the right-hand side moves, so many from the last. To equal steps, which are not to be shorter, a
-/// velocity that moves nothing by its last digit is nothing: what rests may be pushed by far ends of something wide.
-fn sizes(way: &Way, moved: usize, equal: bool) -> Vec<f64> {
+/// How large the numbers are that the right-hand side moves, so many from the last.
+fn sizes(way: &Way, moved: usize) -> Vec<f64> {
     let [start, end] = way.ends();
     let size = |(a, b): (&f64, &f64)| a.abs().max(b.abs()).max((b - a).abs());
     let sizes: Vec<f64> = start.iter().zip(end).skip(start.len() - moved).map(size).collect();
     let most = sizes.iter().copied().fold(0.0, f64::max);
-    let farthest = start.iter().take(start.len() - moved).fold(0.0, |most: f64, x| most.max(x.abs()));
-    let least = if equal { f64::EPSILON * farthest / way.h.abs() } else { 0.0 };
-    sizes.into_iter().map(|size| size.max(SMALLEST_SIZE * most).max(least)).collect()
+    sizes.into_iter().map(|size| size.max(SMALLEST_SIZE * most)).collect()
 }

@@ -9,13 +9,15 @@ use super::step::{LEAST_SCALE, ROUNDED_SCALE};
 /// energies that hundreds of copies show.
 const NEGLIGIBLE: f64 = f64::EPSILON / 256.0;
 /// Below this, in units of what a number is measured by, a change that no longer falls may be round-off …
-const ROUND_OFF: f64 = 1e-13;
+pub(super) const ROUND_OFF: f64 = 1e-13;
 /// … and below this it is.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 /// Changes fall fast if each is at most the last over this.
 const FAST: f64 = 8.0;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
+/// What rounding adds to a change like this tells nothing of how changes fall.
+const ABOVE_ROUNDING: f64 = 1e-12;
 /// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
 const NO_LONGER_FALLING: u32 = 5;
 
@@ -31,6 +33,8 @@ pub(super) struct Changes {
     slow: u32,
     /// The most that a change is measured by, inverted.
     pub(super) limit: f64,
+    /// The most that is left of a change by the next one, of those above rounding.
+    pub(super) left: f64,
 }
 
 impl Default for Changes {
@@ -42,6 +46,7 @@ impl Default for Changes {
             before: 0.0,
             slow: 0,
             limit: f64::INFINITY,
+            left: 0.0,
         }
     }
 }
@@ -53,6 +58,9 @@ impl Changes {
     pub(super) fn judged(&mut self, change: f64, limit: impl FnOnce() -> f64) -> Option<bool> {
         // What is to come is to this change as that is to the last, or the last to the one before it.
         let last = self.last;
+        if change > ABOVE_ROUNDING && change > self.left * last {
+            self.left = change / last;
+        }
         if change * change <= NEGLIGIBLE * last && change * last <= NEGLIGIBLE * self.before {
             return Some(true);
         }
@@ -75,7 +83,7 @@ impl Changes {
             return Some(true);
         }
         if for_long && change < STAGNATION * (ROUNDED_SCALE / LEAST_SCALE) && self.limit == f64::INFINITY {
-            *self = Self { limit: limit(), ..Self::default() };
+            *self = Self { limit: limit(), left: self.left, ..Self::default() };
             return None;
         }
         (!change.is_finite() || for_long).then_some(false)

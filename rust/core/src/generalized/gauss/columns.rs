@@ -6,6 +6,7 @@
 
 use super::Table;
 use super::changes::Changes;
+use super::noise;
 use super::pace::FADING;
 use super::step::{AGAIN, LEAST_SCALE, MOST_ITERATIONS, UNFELT, WILD, limit};
 use crate::expressions::execute::{self, Part, Scalar};
@@ -91,6 +92,8 @@ pub(super) struct Settled {
     pub(super) evaluations: [u32; WIDTH],
     /// By what the last one changed the stages, as parts of sizes.
     pub(super) change: Lanes,
+    /// The most that one left of a change.
+    pub(super) left: Lanes,
 }
 
 /// Steps on their way.
@@ -186,9 +189,9 @@ fn set_scales<V: Vector8>(
         let size = V::load(columns.tried[i]).max(least);
         let scale = V::select(V::zero().less(size), V::one() / size, V::zero());
         columns.scales[i] = V::select(running, scale, V::load(columns.scales[i])).store();
-        let noise = V::load(columns.noise[i]);
-        let cap = V::splat(f64::EPSILON) / (noise * h.abs());
-        let cap = V::select(V::zero().less(noise), cap, V::splat(f64::INFINITY));
+        let noise_of = V::load(columns.noise[i]);
+        let cap = V::splat(noise::AS_ROUNDING) / (noise_of * h.abs());
+        let cap = V::select(V::zero().less(noise_of), cap, V::splat(f64::INFINITY));
         columns.measures[i] = V::load(columns.scales[i]).min(cap).store();
     }
 }
@@ -253,6 +256,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         converged: Bits::splat(false),
         evaluations: [MOST_ITERATIONS; WIDTH],
         change: Lanes([f64::INFINITY; WIDTH]),
+        left: Lanes([0.0; WIDTH]),
     };
     let mut changes = [Changes::default(); WIDTH];
     let mut limit = Lanes::splat(f64::INFINITY);
@@ -309,6 +313,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         for lane in (0..WIDTH).filter(|&lane| open.lane(lane)) {
             let judged = changes[lane].judged(most.0[lane], || columns.limit(lane));
             limit.0[lane] = changes[lane].limit;
+            settled.left.0[lane] = changes[lane].left;
             if let Some(converged) = judged {
                 let lane_alone = Bits(1 << lane);
                 (settled.evaluations[lane], settled.change.0[lane]) = (iteration, most.0[lane]);
@@ -368,6 +373,7 @@ pub(super) fn found(work: &mut Work<'_>) -> Settled {
         for lane in (0..WIDTH).filter(|&lane| wild.lane(lane)) {
             all.evaluations[lane] += again.evaluations[lane];
             all.change.0[lane] = again.change.0[lane];
+            all.left.0[lane] = again.left.0[lane];
         }
     }
     all.converged = all.converged.and(began_wildly(work).not());

@@ -228,12 +228,20 @@ impl Trial<Lanes> for GaussEight {
         let noisy = self.lanes(|lane, pace| {
             asked.lane(lane) && pace.may_be_noise(self.steps, || self.most_noise(lane, state, h))
         });
+        let mut is_known = known;
         if noisy.any() {
             self.look_for_noise(t, state, noisy);
             let smoothness = self.smoothness(h, running);
             for lane in (0..WIDTH).filter(|&lane| noisy.lane(lane)) {
                 self.paces[lane].takes_beside_noise(smoothness.0[lane]);
             }
+            is_known = known.or(noisy.and(self.lanes(|_, pace| pace.noisy)));
+        }
+        let of =
+            |tolerance: f64| (self.beyond.rounding.resolving(self.table, self.form, tolerance), self.form);
+        for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
+            let left = is_known.lane(lane).then_some(iterated.left.0[lane]);
+            self.paces[lane].resolving = self.steps.resolving(left, of);
         }
         let felt = felt(self.form, self.table.stages, &self.columns, h);
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {

@@ -4,6 +4,7 @@
 //! iteration gets below and no polynomial follows; of a stiff spring that is far more than the last digits of a rate. It is asked
 //! for where a step is in trouble, and from there on if that was why.
 
+use super::changes::ROUND_OFF;
 use super::columns::AT_ONCE;
 use super::step::{Iterated, Work, found};
 use crate::expressions::Machine;
@@ -22,9 +23,12 @@ pub(super) fn most(largest: f64, (form, h): (Form, f64)) -> f64 {
     FASTEST * f64::EPSILON * largest / time
 }
 
+/// What noise is measured as at most: changes that stand still eight times above it are rounding.
+pub(super) const AS_ROUNDING: f64 = ROUND_OFF / 8.0;
+
 /// What a change is measured by at most, inverted: noise is then as rounding is.
 pub(super) fn cap(noise: f64, h: f64) -> f64 {
-    if noise > 0.0 { f64::EPSILON / (noise * h.abs()) } else { f64::INFINITY }
+    if noise > 0.0 { AS_ROUNDING / (noise * h.abs()) } else { f64::INFINITY }
 }
 
 /// A number with its last digit off: to which side, of eight samples, no two of seven numbers have alike.

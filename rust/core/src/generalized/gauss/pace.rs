@@ -23,6 +23,8 @@ const NOT_FOLLOWED: f64 = 0.2;
 const FOLLOWED: f64 = 0.1;
 /// What is left of a δ a step later.
 const LATELY: f64 = 0.8;
+/// A step that is longer than what resolves the fastest motion by no more than this is taken.
+const HARDLY_RESOLVING: f64 = 0.9;
 /// Steps get much shorter by a δ so many times as large as it should be.
 const MUCH_SHORTER: f64 = 4.0;
 /// Steps change where they would change by more than from here …
@@ -74,6 +76,8 @@ pub(super) struct Pace {
     pub(super) longest_free: f64,
     /// Whether noise of rates was found in a step that was in trouble.
     pub(super) noisy: bool,
+    /// The part of the step that resolves the fastest motion of all, if nothing but that tells.
+    pub(super) resolving: Option<f64>,
     /// δ of the steps before it that were kept, the older the less.
     lately: f64,
     /// Whether steps have come to a length that the motion tells, and whether that has been held.
@@ -81,6 +85,19 @@ pub(super) struct Pace {
     held: bool,
     /// Whether steps are held.
     holding: bool,
+}
+
+impl Steps {
+    /// The part of a step that resolves the fastest motion of all, of which so much was left of a change of stages, if that is to
+    /// tell; what is left where one is resolved hangs on the tolerance.
+    pub(super) fn resolving(self, left: Option<f64>, of: impl Fn(f64) -> (f64, Form)) -> Option<f64> {
+        let Self::Chosen { tolerance, .. } = self else { return None };
+        let left = left.filter(|left| *left > 0.0)?;
+        let (resolving, form) = of(tolerance);
+        let part = resolving / left;
+        // Of the second order it goes with the square of the step.
+        Some(if matches!(form, Form::SecondOrder(_)) { part.sqrt() } else { part })
+    }
 }
 
 impl Pace {
@@ -96,7 +113,9 @@ impl Pace {
             Steps::Chosen { tolerance, delta, band, .. } => {
                 // It passes through zero at times.
                 let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
-                !self.converged || self.strays(delta, band) || ending.met(self.missed, astray, tolerance)
+                let unresolved = self.resolving.is_some_and(|part| part < HARDLY_RESOLVING);
+                let strays = unresolved || self.strays(delta, band);
+                !self.converged || strays || ending.met(self.missed, astray, tolerance)
             }
         }
     }
@@ -155,6 +174,7 @@ impl Pace {
         } else {
             h * Real::min(Real::max(factor, 0.3), fast)
         };
+        let longest = self.resolving.map_or(longest, |part| Real::min(longest, (h * part).abs()));
         let longest = if self.felt < FREE { Real::min(longest, self.longest_free) } else { longest };
         // A number that is next to nothing makes first steps that are nothing beside the motion, and none that is held.
         self.grown |= factor <= LONGER || next.abs() > longest;
@@ -177,6 +197,9 @@ impl Pace {
         match steps {
             Steps::Chosen { delta, band, .. } if self.converged && self.strays(delta, band) => {
                 h * Real::max(self.factor(delta, table), 0.2)
+            }
+            Steps::Chosen { .. } if self.converged && self.resolving.is_some() => {
+                h * self.resolving.map_or(0.4, |part| Real::max(Real::min(part, 0.8), 0.2))
             }
             _ => h * 0.4,
         }
@@ -209,6 +232,10 @@ pub(super) fn first_step(
     (if first > 0.0 { first } else { Real::min(1e-3, span.abs()) }).copysign(span)
 }
 
+fn factorial(n: usize) -> f64 {
+    (1..=n).fold(1.0, |product, k| product * k as f64)
+}
+
 impl Table {
     /// What δ is to be for a relative tolerance of a step, and how many times as much it may be.
     ///
@@ -220,15 +247,19 @@ impl Table {
             return ((100.0 * rtol.sqrt()).clamp(1e-5, 3e-2), BAND);
         }
         let s = self.stages as f64;
-        let factorial = |n: usize| (1..=n).fold(1.0, |product, k| product * k as f64);
-        let once = factorial(self.stages);
-        let error = once * once / (factorial(2 * self.stages) * factorial(2 * self.stages + 1));
+        let (once, error) = (factorial(self.stages), self.error_of_a_turn());
         let farthest = 1.0 + self.c.0[self.stages - 1];
         let astray = self.c.0[..self.stages].iter().fold(1.0 / once, |product, c| product * (farthest - c));
         let turn = Exponential::exp(elementary::ln(rtol / error) * ((s + 1.0) / (2.0 * s + 1.0)));
         // By more than a radian no step is to turn.
         let most = Real::min(if turn < 1.0 { astray * turn } else { astray }, FOLLOWED);
         (most / BAND_OF_FEW, BAND_OF_FEW)
+    }
+
+    /// C, as above.
+    pub(super) fn error_of_a_turn(&self) -> f64 {
+        let once = factorial(self.stages);
+        once * once / (factorial(2 * self.stages) * factorial(2 * self.stages + 1))
     }
 
     /// The leading term of the polynomial through the stages, at the farthest stage of a next step.

@@ -6,9 +6,16 @@
 //! no more than that, tells nothing of the motion.
 
 use super::Table;
+use crate::numerics::elementary::{self, Exponential};
+use crate::numerics::lanes::WIDTH;
+use crate::ode::system::Form;
 
 /// By what rates are rounded, as a part of the largest.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Powers of a matrix after which its largest eigenvalue is all that is left, and over which its growth is the mean of: of pairs of
+/// complex ones it goes up and down.
+const SETTLED: u32 = 64;
 
 /// What has less than this part of the largest rate hardly moves beside it.
 pub(super) const HARDLY: f64 = 1e-3;
@@ -20,13 +27,26 @@ pub(super) struct Rounding {
     first: f64,
     /// In a step as long as the one before it.
     equal: f64,
+    /// The error of a turn by 1, whose power 2s + 1 it goes with.
+    error: f64,
+    /// What an iteration leaves of a change of the stages of such a turn, of the first order.
+    left: f64,
 }
 
 impl Rounding {
     /// Of a method.
     pub(super) fn of(table: &Table) -> Self {
         let first = table.leading(|k| 1.0_f64.copysign(table.weights.0[k]));
-        Self { first, equal: amplified(table, 1.0) }
+        Self { first, equal: amplified(table, 1.0), error: table.error_of_a_turn(), left: left(table) }
+    }
+
+    /// So much is left of a change of stages by an iteration at most, where the fastest turn that forces can make errs by no more
+    /// than the tolerance in a step: beside noise nothing else tells how far a step resolves it.
+    pub(super) fn resolving(&self, table: &Table, form: Form, tolerance: f64) -> f64 {
+        let order = (2 * table.stages + 1) as f64;
+        let turn = Exponential::exp(elementary::ln(tolerance / self.error) / order);
+        let left = self.left * turn;
+        if matches!(form, Form::SecondOrder(_)) { left * left } else { left }
     }
 
     /// So many times what rates are off a stage is led astray by that, at most, in a step of length `h` after so many kept ones,
@@ -41,6 +61,26 @@ impl Rounding {
             amplified(table, h / last)
         }
     }
+}
+
+/// The spectral radius of the matrix of a method.
+fn left(table: &Table) -> f64 {
+    let mut x = [0.0; WIDTH];
+    x[0] = 1.0;
+    let mut growth = 1.0;
+    for power in 0..2 * SETTLED {
+        let mut next = [0.0; WIDTH];
+        for (row, x) in table.a.iter().zip(&x).take(table.stages) {
+            for (next, weight) in next.iter_mut().zip(&row.0).take(table.stages) {
+                *next += weight * x;
+            }
+        }
+        let norm = next.iter().map(|x| x * x).sum::<f64>().sqrt();
+        x = next.map(|x| x / norm);
+        growth *= if power < SETTLED { 1.0 } else { norm };
+    }
+    // The root of the order SETTLED.
+    (0..SETTLED.ilog2()).fold(growth, |root, _| root.sqrt())
 }
 
 /// How many times a rounding counts at the last stage of a next step that is so many times as long.

@@ -106,6 +106,8 @@ pub(super) struct Iterated {
     pub(super) evaluations: u32,
     /// By what the last one changed the stages, as a part of sizes.
     pub(super) change: f64,
+    /// The most that one left of a change.
+    pub(super) left: f64,
 }
 
 /// A step on its way.
@@ -248,10 +250,10 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
         }
         let change = largest(change.store());
         if let Some(converged) = changes.judged(change, || stages.limit()) {
-            return Iterated { converged, evaluations: iteration, change };
+            return Iterated { converged, evaluations: iteration, change, left: changes.left };
         }
     }
-    Iterated { converged: false, evaluations: MOST_ITERATIONS, change: f64::INFINITY }
+    Iterated { converged: false, evaluations: MOST_ITERATIONS, change: f64::INFINITY, left: changes.left }
 }
 
 /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep wall,

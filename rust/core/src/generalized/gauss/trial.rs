@@ -308,10 +308,15 @@ impl Trial<f64> for GaussStep {
         let (iterated, known) = self.iterated(t, h, state);
         self.pace.converged = iterated.converged;
         self.pace.delta = if iterated.converged { self.smoothness(h) } else { f64::INFINITY };
+        let mut is_known = known;
         if !known && self.pace.may_be_noise(self.steps, || self.most_noise(state, h)) {
             self.look_for_noise(t, state);
             self.pace.takes_beside_noise(self.smoothness(h));
+            is_known = self.pace.noisy;
         }
+        self.pace.resolving = self.steps.resolving(is_known.then_some(iterated.left), |tolerance| {
+            (self.beyond.rounding.resolving(self.table, self.form, tolerance), self.form)
+        });
         self.pace.felt = if iterated.converged { self.felt(h) } else { f64::INFINITY };
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
