@@ -1,4 +1,4 @@
-"""Velocities that are given for bodies with fixed points, alone and in copies: what follows from the spin, and how nearly.
+"""Velocities given for bodies with fixed points, alone and in copies: what follows from the spin, and how nearly.
 
 A billionth beside it is taken for it; what a run gives, which is it but for roundings, stays to the bit.
 """
@@ -37,7 +37,7 @@ def scene() -> vv.Scene:
     )
 
 
-def held(speed: float) -> vv.RigidBody:
+def held(speed: float) -> vv.RigidBodies:
     return vv.RigidBody(1.0, [1.0, 1.0, 1.0], velocity=[0.0, speed, 0.0], **HELD)
 
 
