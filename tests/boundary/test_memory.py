@@ -46,5 +46,5 @@ def test_the_bytes_that_are_missing_are_those_of_all_numbers_of_an_array() -> No
     from visviva._long_arrays import as_float64
 
     lent = np.lib.stride_tricks.as_strided(np.zeros(1, np.float32), (3, 10**8, 10**6), (0, 0, 0))
-    with pytest.raises(vv.InvalidInput, match=r"^t: a copy of it would take 2400000000000000 bytes, which are not avail"):
+    with pytest.raises(vv.InvalidInput, match=r"^t: a copy of it would take 2400000000000000 bytes, which are not"):
         as_float64("t", lent)
