@@ -90,5 +90,9 @@ def test_a_center_that_is_faster_than_float64_is_refused_with_the_body_that_has_
             [1.0, 1.0],
             [[1.0, 1.0, 1.0]] * 2,
             angular_velocity=[[0.0, 0.0, 2.0], [0.0, 0.0, 1e200]],
-            pivot=[[-3.0, 0.0, 0.0], [-1e150, 0.0, 0.0]],
+            pivot=[[-3.0, 0.0, 0.0], [0.0, -1e150, 0.0]],
         )
+
+
+def test_free_bodies_alone_keep_any_velocity() -> None:
+    assert vv.RigidBody(1.0, [1.0, 1.0, 1.0], velocity=[0.0, 5.0, 1.0]).velocity.tolist() == [[0.0, 5.0, 1.0]]
