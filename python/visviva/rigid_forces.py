@@ -224,14 +224,43 @@ class CompiledTorque(BodyForce):
     def rotated(self, rotation: ArrayLike) -> Self:
         """Refuse: the function is of the axes of space that it was written for.
 
-        A matrix, shape (3, 3), without dimension, does not turn it.
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            As of other torques, without dimension.
+
+        Returns
+        -------
+        CompiledTorque
+            Itself, for the matrix that turns nothing.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For every other one.
         """
         if np.array_equal(orthogonal(rotation), np.eye(3)):
             return self
         raise InvalidInput("forces", "CompiledTorque cannot be rotated: what it computes is along the axes it knows")
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
-        """Refuse: the function computes in its own units."""
+        """Refuse: the function computes in its own units.
+
+        Parameters
+        ----------
+        length, mass, time : float, optional
+            What one old unit is in new ones; positive.
+
+        Returns
+        -------
+        CompiledTorque
+            Itself, where no unit is another.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            Where one is.
+        """
         if (length, mass, time) == (1.0, 1.0, 1.0):
             return self
         raise InvalidInput("forces", "CompiledTorque cannot be rescaled: it computes in units of its own")

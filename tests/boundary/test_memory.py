@@ -3,7 +3,10 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+
+import visviva as vv
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the limit of the address space is Linux's")
 
@@ -36,3 +39,12 @@ print(vv.potentials.Yukawa(1.0, 1.0).value(1.0) > 0)
     child = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert child.returncode == 0, child.stderr
     assert child.stdout == "InvalidInput True\nTrue\n"
+
+
+def test_the_bytes_that_are_missing_are_those_of_all_numbers_of_an_array() -> None:
+    """Eight for each of 3 · 10¹⁴ numbers: more than addresses reach."""
+    from visviva._long_arrays import as_float64
+
+    lent = np.lib.stride_tricks.as_strided(np.zeros(1, np.float32), (3, 10**8, 10**6), (0, 0, 0))
+    with pytest.raises(vv.InvalidInput, match=r"^t: a copy of it would take 2400000000000000 bytes, which are not"):
+        as_float64("t", lent)

@@ -80,7 +80,7 @@ def test_the_energy_of_the_center_of_mass_is_known_where_the_square_of_the_momen
 
 
 def test_a_torque_beyond_float64_is_not_known() -> None:
-    """1e160 at an arm of 1 in a field of 1e150, beside a body of 1: the torque about y is no number, that about z is 0."""
+    """1e160 at an arm of 1 in a field of 1e150, beside a body of 1: about y it is no number, about z it is 0."""
     bodies = vv.Particles([1e160, 1.0], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
     told = vv.Scene(bodies, vv.UniformField([0.0, 0.0, -1e150])).invariants(about=[0.0, 0.0, 0.0]).torque
     assert np.isnan(told[1])

@@ -1,4 +1,4 @@
-"""Velocities that are given for bodies with fixed points, alone and in copies: what follows from the spin, and how nearly.
+"""Velocities given for bodies with fixed points, alone and in copies: what follows from the spin, and how nearly.
 
 A billionth beside it is taken for it; what a run gives, which is it but for roundings, stays to the bit.
 """
@@ -37,7 +37,7 @@ def scene() -> vv.Scene:
     )
 
 
-def held(speed: float) -> vv.RigidBody:
+def held(speed: float) -> vv.RigidBodies:
     return vv.RigidBody(1.0, [1.0, 1.0, 1.0], velocity=[0.0, speed, 0.0], **HELD)
 
 
@@ -90,5 +90,9 @@ def test_a_center_that_is_faster_than_float64_is_refused_with_the_body_that_has_
             [1.0, 1.0],
             [[1.0, 1.0, 1.0]] * 2,
             angular_velocity=[[0.0, 0.0, 2.0], [0.0, 0.0, 1e200]],
-            pivot=[[-3.0, 0.0, 0.0], [-1e150, 0.0, 0.0]],
+            pivot=[[-3.0, 0.0, 0.0], [0.0, -1e150, 0.0]],
         )
+
+
+def test_free_bodies_alone_keep_any_velocity() -> None:
+    assert vv.RigidBody(1.0, [1.0, 1.0, 1.0], velocity=[0.0, 5.0, 1.0]).velocity.tolist() == [[0.0, 5.0, 1.0]]
