@@ -58,6 +58,24 @@ def test_equal_steps_that_resolve_the_spring_are_taken(part: float, momenta: boo
     assert out.conservation()["energy"] < 1e-13
 
 
+@pytest.mark.parametrize("method", ["gauss8", "gauss16"])
+@pytest.mark.parametrize(("offset", "stiffness", "start"), [(0.0, 1e8, 1.0), (10.0, 1e8, 1.0), (1e3, 1e6, 1.0 + 1e-8)])
+def test_shaking_below_the_rounding_of_a_polynomial_is_followed_too(
+    method: str, offset: float, stiffness: float, start: float
+) -> None:
+    """Vibrations of 1e-8 and less, far from the origin: what noise hides of them was off by 1e-9, their velocity by 1e-5."""
+    x, y, t = vv.coordinate("x"), vv.coordinate("y"), vv.time
+    potential = stiffness * (sympy.sqrt((x - offset) ** 2 + y**2) - 1) ** 2 / 2 + GRAVITY * y
+    kinetic = (x.diff(t) ** 2 + y.diff(t) ** 2) / 2
+    system = vv.Lagrangian(kinetic - potential, [x, y], position=[offset + start, 0.0])
+    exact = system.run(1.0, method="taylor", rtol=1e-14)
+    out = system.run(1.0, method=method)
+    # K ε |x| of each acceleration, at 1e4 of which a period ends: a random walk of some thousand.
+    rounding = np.finfo(float).eps * (offset + 1.0)
+    assert out.position[-1] == pytest.approx(exact.position[-1], rel=0.0, abs=30.0 * rounding)
+    assert out.velocity[-1] == pytest.approx(exact.velocity[-1], rel=0.0, abs=30.0 * rounding * np.sqrt(stiffness))
+
+
 def test_a_shaking_bead_is_followed_as_well() -> None:
     # Shaken by a millionth: the energy of that is 5e-5 of the whole, and it takes as many steps as it has turns.
     stiffness = 1e8

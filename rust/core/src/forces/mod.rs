@@ -118,6 +118,12 @@ pub trait Force<S: Element>: Send {
         Ok(None)
     }
 
+    /// As [`System::is_calm`], of this force.
+    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+        let _ = (step, times);
+        true
+    }
+
     /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
     fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
         let _ = (h, v);
@@ -233,6 +239,10 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
             }
         }
         Ok(until)
+    }
+
+    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+        self.forces.iter_mut().all(|force| force.is_calm(step, times))
     }
 
     fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {

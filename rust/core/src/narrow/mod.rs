@@ -139,6 +139,15 @@ impl<S: Width + Controlled> Narrow<S> {
         if asked.any() { self.followed(&Taken { asked, ..*step }) } else { Ok(None) }
     }
 
+    /// Whether steps so many times as long as the last one would have seen as much: [`System::is_calm`](crate::ode::system::System::is_calm).
+    pub fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+        let (h, reach, gap) = (step.h * S::splat(times), SHARE * self.reach(step), self.gap(step));
+        if self.of.steady {
+            return (self.fastest * h.abs()).less_equal(S::splat(reach / gap)).all();
+        }
+        self.ends.is_calm(step.asked, &h, (reach, gap), &self.of.at_ends)
+    }
+
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let little = (SHARE * self.reach(step), self.gap(step));

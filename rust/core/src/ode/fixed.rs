@@ -79,6 +79,11 @@ pub trait Recorder<S: Element> {
         false
     }
 
+    /// The node up to which steps need not be looked into.
+    fn looks_again_at(&self) -> u64 {
+        0
+    }
+
     /// Takes note of the state at a node, in the first, the second … of nine places.
     fn note(&mut self, place: usize, node: u64, state: &State<S>) {
         let _ = (place, node, state);
@@ -281,6 +286,11 @@ fn through<S: Element>(
                 // What starts at zero is told from what comes there in the first step alone.
                 (Some(before), Some(ahead)) if past > 0 => {
                     ahead.advance(at_most, walk, before, ticker, recorder)?
+                }
+                (Some(_), _) if recorder.looks_again_at() > walk.node => {
+                    walk.step(at_most.min(recorder.looks_again_at() - walk.node), ticker)?;
+                    walk.stepper.settle(walk.state);
+                    true
                 }
                 (Some(before), _) => {
                     before.copy_from(walk.state);

@@ -212,6 +212,13 @@ pub trait System<S: Element>: Send {
         Ok(None)
     }
 
+    /// Whether nothing would have been unseen in a step so many times as long as the one that was last
+    /// [asked of](Self::seen_until), if all went on as it does there: then a few steps may go unasked.
+    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+        let _ = (step, times);
+        true
+    }
+
     /// How long a step of a system of the second order may be from a state with these accelerations, if something on the
     /// way acts that no step feels before it is there.
     fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {

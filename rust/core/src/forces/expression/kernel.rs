@@ -170,4 +170,7 @@ impl Force<Lanes> for Kernel {
     fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
         self.unseen.as_mut().map_or(Ok(None), |unseen| unseen.seen_until(step))
     }
+    fn is_calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> bool {
+        self.unseen.as_mut().is_none_or(|unseen| unseen.is_calm(step, times))
+    }
 }

@@ -89,6 +89,18 @@ impl Unseen {
     }
 }
 
+impl Unseen {
+    /// As [`System::is_calm`](crate::ode::system::System::is_calm).
+    pub(super) fn is_calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> bool {
+        let Self { way, rows, .. } = self;
+        let h = step.h * Lanes::splat(way.time);
+        rows.iter_mut().zip(&way.force).all(|(narrow, force)| {
+            let asked = step.asked.and(Lanes::zero().less(*force));
+            !asked.any() || narrow.is_calm(&Taken { asked, h, ..*step }, times)
+        })
+    }
+}
+
 /// A body at the ends of a step: its place and its velocity, as the expression has them, and its acceleration.
 #[derive(Default)]
 struct OfBody {

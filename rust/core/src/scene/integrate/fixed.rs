@@ -248,6 +248,10 @@ impl Recorder<Lanes> for Records<'_> {
         self.along.is_some()
     }
 
+    fn looks_again_at(&self) -> u64 {
+        if self.watches.iter().any(Option::is_some) { 0 } else { self.passed_over.calm_until }
+    }
+
     #[inline(always)]
     fn note(&mut self, place: usize, node: u64, state: &State<Lanes>) {
         if let (Some(along), [unit]) = (&mut self.along, &self.units[..]) {
@@ -263,8 +267,8 @@ impl Recorder<Lanes> for Records<'_> {
         let Taken { node, before, after, part, stepper, system, repeated } = taken;
         let from = self.step * node as f64;
         let to = part.map_or_else(|| self.step * (node + 1) as f64, |part| from + part);
-        let over = self.passed_over.lanes([before, after], (from, to - from), system)?;
         let (span, steps) = (Span { from, to }, node + u64::from(part.is_none()));
+        let over = self.passed_over.lanes([before, after], ((from, to - from), steps), system)?;
         let between = self.between.get_or_insert_with(|| before.clone());
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
         // Whose watches must look, and which of them are where the step begins.

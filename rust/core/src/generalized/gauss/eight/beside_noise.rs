@@ -30,6 +30,7 @@ pub(super) fn found_beside_noise(work: &mut Work<'_>, known: Bits) -> (Settled, 
     all.converged = all.converged.or(beside.converged);
     for lane in (0..WIDTH).filter(|&lane| held_up.lane(lane)) {
         all.evaluations[lane] += 1 + beside.evaluations[lane];
+        (all.change.0[lane], all.left.0[lane]) = (beside.change.0[lane], beside.left.0[lane]);
     }
     (all, known.or(held_up))
 }

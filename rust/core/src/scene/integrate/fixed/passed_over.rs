@@ -12,6 +12,11 @@ use crate::scene::integrate::Job;
 use crate::scene::integrate::report::{Counts, Ending, Report};
 use crate::scene::unit::Prepared;
 
+/// So many steps go unasked where nothing would be unseen in one …
+const UNASKED: u64 = 7;
+/// … so many times as long: rates may grow fourfold meanwhile.
+const CALM: f64 = 32.0;
+
 /// The units of a group that have ended so.
 #[derive(Default)]
 pub(super) struct PassedOver {
@@ -19,13 +24,15 @@ pub(super) struct PassedOver {
     reports: Vec<Option<Report>>,
     /// Where a step looks.
     looks: Vec<f64>,
+    /// The node up to which nothing is looked for.
+    pub(super) calm_until: u64,
 }
 
 impl PassedOver {
     /// Of so many units of a run.
     pub(super) fn new(job: &Job<'_>, units: usize) -> Self {
         if job.plan.passes_over() {
-            Self { reports: vec![None; units], looks: job.plan.method.looks() }
+            Self { reports: vec![None; units], looks: job.plan.method.looks(), calm_until: 0 }
         } else {
             Self::default()
         }
@@ -36,14 +43,14 @@ impl PassedOver {
         !self.reports.is_empty()
     }
 
-    /// The lanes that a step from the first to the second state, at `from` and for `h`, has led over something unseen.
+    /// The lanes that a step from the first to the second state, at `from` and for `h`, to a node, has led over something unseen.
     ///
     /// # Errors
     /// As [`System::seen_until`].
     pub(super) fn lanes(
-        &self,
+        &mut self,
         [before, after]: [&State<Lanes>; 2],
-        (from, h): (f64, f64),
+        ((from, h), node): ((f64, f64), u64),
         system: &mut dyn System<Lanes>,
     ) -> Result<Bits> {
         if !self.looks() {
@@ -57,6 +64,9 @@ impl PassedOver {
         } else {
             system.seen_until(&taken)?
         };
+        if seen.is_none() && system.is_calm(&taken, CALM) {
+            self.calm_until = node + UNASKED;
+        }
         Ok(seen.map_or(Bits(0), |seen| seen.less(Lanes::one())))
     }
 
