@@ -22,7 +22,10 @@ use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::tiered;
 use crate::units::Units;
+use series::SpringSeries;
 use std::sync::Arc;
+
+mod series;
 
 /// The exponents of length, mass and time in a stiffness.
 const STIFFNESS: [i32; 3] = [0, 1, -2];
@@ -85,6 +88,18 @@ impl Springs {
         let spring = |at: usize| Spring { k: of_link(&k, at), length: of_link(&length, at) };
         Ok(Self { springs: (0..count).map(spring).collect(), links: Links::new(count, &i, &j) })
     }
+
+    fn acting(&self, context: &Context<'_>) -> Kernel {
+        let linked = Linked::new(&self.links, context);
+        let number = |system: &System<'_>, at: usize| context.own(self, system).springs[at];
+        Kernel {
+            k: linked.numbers(context, |system, at| context.units.take(number(system, at).k, STIFFNESS)),
+            length: linked
+                .numbers(context, |system, at| context.units.take(number(system, at).length, [1, 0, 0])),
+            long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
+            linked,
+        }
+    }
 }
 
 /// How much of the vector from one end to the other is the force on the first.
@@ -100,26 +115,24 @@ impl ForceTerm for Springs {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let linked = Linked::new(&self.links, context);
-        let number = |system: &System<'_>, at: usize| context.own(self, system).springs[at];
-        Box::new(Kernel {
-            k: linked.numbers(context, |system, at| context.units.take(number(system, at).k, STIFFNESS)),
-            length: linked
-                .numbers(context, |system, at| context.units.take(number(system, at).length, [1, 0, 0])),
-            long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
-            linked,
-        })
+        Box::new(self.acting(context))
     }
-    /// Without lengths springs are linear. With one, a spring that is pressed together to nothing on a line has a series
-    /// that goes on, and the force turns about.
+    /// Without lengths springs are linear.
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
-        LinearSeries::between_bodies(self.kernel(context), Some(self.kernel(context)))
+        let kernel = self.acting(context);
+        if kernel.long.contains(&true) {
+            return Some(Box::new(SpringSeries::new(kernel)));
+        }
+        LinearSeries::between_bodies(Box::new(kernel), Some(self.kernel(context)))
     }
     fn series_in_every_lane(&self) -> bool {
         true
     }
     fn has_series(&self) -> bool {
-        self.springs.iter().all(|spring| spring.length == 0.0)
+        true
+    }
+    fn holds(&self, particle: usize) -> bool {
+        self.links.at(particle).any(|at| self.springs[at].k != 0.0)
     }
     fn potential_and_virial(
         &self,

@@ -173,7 +173,7 @@ impl<S: Held> Bodies<S> {
             self.points = Jet::new(many, jet.order);
         }
         (self.points.t, self.points.unit, self.points.per_unit) = (jet.t, jet.unit, per_unit);
-        self.points.order = jet.order;
+        (self.points.order, self.points.forward) = (jet.order, jet.forward);
         for n in 0..=jet.order {
             for number in 0..len {
                 self.rates.set(number, n, S::of(&jet.q[n * len + number]));
