@@ -27,15 +27,15 @@ use eights::{Eight, Eights};
 
 mod eights;
 
-/// So small a part of its length makes no difference to a spring, and is more than the last digits of places.
+/// Ends that are so small a part of its length apart as good as meet.
 const NOTHING: f64 = 64.0 * f64::EPSILON;
 
 /// Some springs in each register.
 pub(super) struct SpringSeries {
     springs: Springs,
     kept: Kept<Lanes>,
-    /// Of each register, the part of the lengths that makes no difference.
-    ways: Vec<Lanes>,
+    /// Of each register, the distance of ends that makes no difference.
+    near: Vec<Lanes>,
     beside: Beside,
 }
 
@@ -75,7 +75,7 @@ impl SpringSeries {
         Self {
             kept: Kept::new(linked.shape, k.len()),
             beside: Beside::default(),
-            ways: length.iter().map(|length| none(length, NOTHING, f64::INFINITY)).collect(),
+            near: length.iter().map(|length| none(length, NOTHING, f64::INFINITY)).collect(),
             springs: Springs {
                 softening2: length.iter().map(|length| none(length, 0.0, 1.0)).collect(),
                 k,
@@ -222,6 +222,6 @@ impl Series<Lanes> for SpringSeries {
         Ok(())
     }
     fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
-        Some(Lanes::pass(Apart { kept: &self.kept, ways: &self.ways, jet, h: &h }))
+        Some(Lanes::pass(Apart { kept: &self.kept, near: &self.near, jet, h: &h }))
     }
 }
