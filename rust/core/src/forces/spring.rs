@@ -5,6 +5,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::links::series::{LinkLaw, LinkSeries, Numbers};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
@@ -22,10 +23,7 @@ use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::tiered;
 use crate::units::Units;
-use series::SpringSeries;
 use std::sync::Arc;
-
-mod series;
 
 /// The exponents of length, mass and time in a stiffness.
 const STIFFNESS: [i32; 3] = [0, 1, -2];
@@ -121,7 +119,8 @@ impl ForceTerm for Springs {
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let kernel = self.acting(context);
         if kernel.long.contains(&true) {
-            return Some(Box::new(SpringSeries::new(kernel)));
+            let Kernel { linked, k, length, .. } = kernel;
+            return Some(Box::new(LinkSeries::<Law>::new(linked, [k, length])));
         }
         LinearSeries::between_bodies(Box::new(kernel), Some(self.kernel(context)))
     }
@@ -205,6 +204,29 @@ impl ForceTerm for Springs {
             Some(units.take(spring.k, STIFFNESS) * extension.abs() / m.min(n))
         };
         Ok(self.links.between(bodies.iter().map(|&(body, ..)| body)).filter_map(of).fold(0.0, f64::max))
+    }
+}
+
+/// `k (1 - length s^(-1/2))` of the squared distance `s`, for the recurrences of its series.
+struct Law;
+
+/// Ends that are so small a part of its length apart as good as meet.
+const NOTHING: f64 = 64.0 * f64::EPSILON;
+
+impl LinkLaw for Law {
+    const EXPONENT: f64 = -0.5;
+    fn may_meet([_, length]: Numbers<f64>) -> bool {
+        length == 0.0
+    }
+    fn near([_, length]: Numbers<f64>) -> f64 {
+        NOTHING * length
+    }
+    #[inline(always)]
+    fn begin<V: Real>([k, length]: Numbers<V>, [square, inverse]: [V; 2], unit2: V) -> [V; 2] {
+        let (k, r) = (unit2 * k, square.sqrt());
+        let per_r = r * inverse;
+        let stretched = V::select(length.less_equal(V::zero()), V::one(), (r - length) * per_r);
+        [-(k * length) * per_r, k * stretched]
     }
 }
 

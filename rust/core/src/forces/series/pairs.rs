@@ -3,7 +3,8 @@
 //! The one idea: of each pair, with `d = x_j - x_i`, `s = |d|²` (and a softening length squared) and `p = s^α`, the
 //! coefficients of order n follow from sums of products of those before: `s_n = Σ d_k·d_(n-k)`, `n s_0 p_n =
 //! Σ (αn - (α+1)k) s_(n-k) p_k` (from `s p' = α s' p`; Jorba & Zou 2005), and the pull is `Σ d_k p_(n-k)`; of
-//! order 0 it may have another factor than the power alone. Every sum over k is
+//! order 0 it may have another factor than the power alone. What goes with `p = s'/s` has `s' / s` in the place of the power:
+//! `s_0 p_n = (n+1) s_(n+1) - Σ s_(n-k) p_k`. Every sum over k is
 //! of the same two chains, whether the lanes are pairs or systems: the same bits alone and in a batch.
 //!
 //! What is newest comes last in each sum, so that a processor can be ahead with the rest.
@@ -21,6 +22,8 @@ pub(in crate::forces) const ORDERS: usize = 24;
 pub(in crate::forces) trait Pairs<V> {
     /// The exponent α of the power of the squared distance.
     const EXPONENT: f64 = -1.5;
+    /// Whether a multiple of the rate of the squared distance is divided by it instead; α is then -1.
+    const BY_RATE: bool = false;
     /// How many registers hold all pairs.
     fn registers(&self) -> usize;
     /// The softening length, squared, of those in a register; where there is no pair, it is no zero.
@@ -42,6 +45,11 @@ pub(in crate::forces) trait Pairs<V> {
     {
         let power = unit2 * square.inverse_cube();
         [power, power]
+    }
+    /// What that rate, in the unit of time, is multiplied with.
+    #[inline(always)]
+    fn of_rate(&self, _register: usize, unit: V) -> V {
+        unit
     }
     /// Writes into `a` what the pulls, register by register, do to each body, if `first`, else adds it.
     fn sum<const C: usize>(&self, pulls: &[[V; C]], a: &mut [V], first: bool);
@@ -110,7 +118,7 @@ impl<S: Element> Orders<'_, S> {
         let Self { kept, jet, n, a, first } = self;
         let of_order = OfOrder {
             n,
-            q: V::view(jet.position(n)),
+            q: [V::view(jet.position(n)), V::view(jet.position(n + 1))],
             rest: V::view(&jet.rests[0]),
             unit: V::load(jet.unit),
             inverse_order: V::load(jet.inverse[n].0),
@@ -142,7 +150,8 @@ impl<S: Element> Whole<'_, S> {
             (V::view_mut(&mut jet.q), V::view_mut(&mut jet.v), V::view(&jet.rests[0]), V::view_mut(a));
         for n in 0..jet.order {
             let inverse_order = V::load(jet.inverse[n].0);
-            let of_order = OfOrder { n, q: &q[n * len..][..len], rest, unit, inverse_order };
+            let (own, next) = q[n * len..][..2 * len].split_at(len);
+            let of_order = OfOrder { n, q: [own, next], rest, unit, inverse_order };
             of_order.coefficient::<P, C>(pairs, rows, (&mut *work, &mut *inverse, &mut *pulls), a, true);
             pairs.beside(n, [&q[n * len..][..len], &v[n * len..][..len]], a);
             let (of_v, of_q) = (V::scaled(&jet.inverse[n + 1]), V::scaled(&jet.inverse[n + 2]));
@@ -154,8 +163,8 @@ impl<S: Element> Whole<'_, S> {
 /// What one order is computed from.
 struct OfOrder<'a, V> {
     n: usize,
-    /// The coefficients of the coordinates.
-    q: &'a [V],
+    /// The coefficients of the coordinates, and those of the next order.
+    q: [&'a [V]; 2],
     /// What those of order 0 leave out.
     rest: &'a [V],
     unit: V,
@@ -183,26 +192,39 @@ impl<V: InverseCube> OfOrder<'_, V> {
             let (d, _) = d.as_chunks_mut::<C>();
             let (s, own) = own.split_at_mut(ORDERS);
             let (p, multiples) = own.split_at_mut(ORDERS);
-            for c in 0..C {
-                let mut difference = pairs.difference(register, (n, c), &q[c * rows..][..rows]);
-                if n == 0 {
-                    difference += pairs.rest(register, c, &rest[c * rows..][..rows]);
-                }
-                d[n][c] = difference;
-            }
             if n == 0 {
+                for c in 0..C {
+                    d[0][c] = pairs.difference(register, (0, c), &q[0][c * rows..][..rows])
+                        + pairs.rest(register, c, &rest[c * rows..][..rows]);
+                }
                 let mut square = pairs.softening2(register);
                 for c in 0..C {
                     square = d[0][c].multiply_add(d[0][c], square);
                 }
                 s[0] = square;
                 inverse[register] = V::one() / square;
-                [multiples[0], p[0]] = pairs.begin(register, [square, inverse[register]], unit * unit);
+            }
+            let known = n + usize::from(P::BY_RATE);
+            if known > 0 {
+                for c in 0..C {
+                    d[known][c] = pairs.difference(register, (known, c), &q[known - n][c * rows..][..rows]);
+                }
+                s[known] = squares::<V, C>(&d[..=known]);
+            }
+            if n == 0 {
+                [multiples[0], p[0]] = if P::BY_RATE {
+                    [V::splat(0.5) * pairs.of_rate(register, unit) * s[1] * inverse[register]; 2]
+                } else {
+                    pairs.begin(register, [s[0], inverse[register]], unit * unit)
+                };
             } else {
-                s[n] = squares::<V, C>(&d[..=n]);
-                let power =
-                    powers::<V>(&s[1..=n], &p[..n], &multiples[..n], [V::splat(-P::EXPONENT), of_weighted])
-                        * inverse[register];
+                let factors = [V::splat(-P::EXPONENT), of_weighted];
+                let mut power = powers::<V>(&s[1..=n], &p[..n], &multiples[..n], factors);
+                if P::BY_RATE {
+                    let of_rate = V::splat(0.5 * known as f64) * pairs.of_rate(register, unit);
+                    power = of_rate.multiply_add(s[known], power);
+                }
+                let power = power * inverse[register];
                 p[n] = power;
                 multiples[n] = V::splat(n as f64) * power;
             }
