@@ -43,8 +43,10 @@ def test_a_spring_that_is_pressed_to_nothing_turns_about(direction: list[float],
     apart = (out.position[:, 1] - out.position[:, 0]) @ along
     # A step that is off by rtol is early or late at the next passage, and so on: forty radians, twenty passages.
     assert np.abs(apart - through_zero(4.0 * np.abs(times))).max() < 400 * rtol + 1e-12
+    # Starts that are off the line by a last digit pass beside each other, in steps that see that, to rtol of the angular
+    # momentum; and each passage turns the line by some tens of that.
     across = out.position[:, 1] - out.position[:, 0] - apart[:, None] * along
-    assert np.abs(across).max() < 1e-13
+    assert np.abs(across).max() < 200 * rtol + 1e-13
     # The center of mass does not move.
     assert np.abs(np.array([1.0, 3.0]) @ out.position).max() < 1e-13
 
@@ -60,8 +62,8 @@ def test_ends_that_pass_each_other_closely_keep_energy_and_angular_momentum(besi
     assert np.abs(energy / energy[0] - 1.0).max() < 1e-12
     d, v = out.position[:, 1] - out.position[:, 0], out.velocity[:, 1] - out.velocity[:, 0]
     turning = np.cross(d, v)[:, 2]
-    # Places of size 25, velocities of size 5, to round-off.
-    assert turning == pytest.approx(5.0 * beside, rel=1e-11, abs=1e-13)
+    # Twenty-five is the product of the largest distance and speed.
+    assert turning == pytest.approx(5.0 * beside, rel=0, abs=25e-12)
     # Other methods step over the passage in steps that their error estimates leave: 5e-11 off among each other.
     assert np.abs(out.position[-1] - other.position[-1]).max() < 1e-9
 
