@@ -245,9 +245,9 @@ impl Plan {
             // Each massless body goes with the massive ones in a time of its own; they have no other bits for it.
             Groups::All if transformed.is_some() => active.len() <= RING_MAX,
             Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),
-            // Eight links of one system go abreast in their series.
-            Groups::Listed(ref groups) if groups.len() == 1 && matches!(method.scheme, Scheme::Taylor(_)) => {
-                scene.copies > 1
+            Groups::Listed(_) if matches!(method.scheme, Scheme::Taylor(_)) => {
+                (scene.copies > 1 || groups.sizes(&forces).len() > 1)
+                    && !series::links_abreast(&groups, &forces)
             }
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
