@@ -1,8 +1,8 @@
-"""Springs that have a length by their Taylor series: beside closed forms, energies, Lagrangians and other methods, also where
-they are pressed together to nothing, which a series does not see.
+"""Springs that have a length by their Taylor series: beside closed forms, energies, Lagrangians and other methods.
 
-Bounds: steps by series are off by less than a tenth of rtol each (of the places of a swing), which a passage or an encounter
-magnifies ten to a thousand times; what they cannot be asked for is the rounding of a few hundred steps.
+Also where they are pressed together to nothing, which a series does not see. Bounds: steps by series are off by less
+than a tenth of rtol each (of the places of a swing), which a passage or an encounter magnifies ten to a thousand times;
+what they cannot be asked for is the rounding of a few hundred steps.
 """
 
 from typing import Any
@@ -24,7 +24,7 @@ def falling(direction: npt.ArrayLike, k: float = 12.0, length: float = 1.0) -> v
 
 
 def through_zero(angle: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """x″ = sign(x) − x from rest at 3: 1 + 2 cos t as far as 0, at 2π/3; then the same on the other side, in reverse."""
+    """x″ = sign(x) − x from rest at 3: 1 + 2 cos t as far as 0, at 2π/3; on the other side the same in reverse."""
     third = 2.0 * np.pi / 3.0
     half_turns, angle = np.divmod(angle, 2.0 * third)
     x = np.where(angle < third, 1.0 + 2.0 * np.cos(angle), -1.0 - 2.0 * np.cos(2.0 * third - angle))
@@ -43,8 +43,8 @@ def test_a_spring_that_is_pressed_to_nothing_turns_about(direction: list[float],
     apart = (out.position[:, 1] - out.position[:, 0]) @ along
     # A step that is off by rtol is early or late at the next passage, and so on: forty radians, twenty passages.
     assert np.abs(apart - through_zero(4.0 * np.abs(times))).max() < 400 * rtol + 1e-12
-    # Starts that are off the line by a last digit pass beside each other, in steps that see that, to rtol of the angular
-    # momentum; and each passage turns the line by some tens of that.
+    # Starts that are off the line by a last digit pass beside each other, in steps that see that, to rtol of the
+    # angular momentum; and each passage turns the line by some tens of that.
     across = out.position[:, 1] - out.position[:, 0] - apart[:, None] * along
     assert np.abs(across).max() < 200 * rtol + 1e-13
     # The center of mass does not move.
@@ -129,7 +129,9 @@ def test_copies_with_springs_of_their_own_have_the_bits_they_have_alone(count: i
 
 def test_ends_of_a_spring_without_length_may_meet_among_others() -> None:
     """The middle of three is at one place with the first, which a spring without length holds, and comes back there."""
-    bodies = vv.Particles(np.ones(3), [[0.0, 0, 0], [0, 0, 0], [2.0, 0.5, 0]], [[0.0, 1, 0], [0, -1, 0], [0, 0, 1]])
+    bodies = vv.Particles(
+        np.ones(3), [[0.0, 0, 0], [0.0, 0, 0], [2.0, 0.5, 0]], [[0.0, 1, 0], [0.0, -1, 0], [0.0, 0, 1]]
+    )
     scene = vv.Scene(bodies, vv.Spring([0, 1, 0], [1, 2, 2], k=[5.0, 2.0, 2.0], length=[0.0, 1.0, 1.0]))
     ours = scene.run(t=np.linspace(0.0, 5.0, 11), method="taylor", rtol=1e-12)
     other = scene.run(t=5.0, method="verner98", rtol=1e-13)

@@ -188,6 +188,11 @@ impl<S: Held> Bodies<S> {
             for (into, velocity) in moving.v[n * many..][..many].iter_mut().zip(&now[half..]) {
                 *into = *velocity * jet.unit;
             }
+            // Forces may look at the places of the next order, which velocities tell.
+            let (next, inverse) = (&mut moving.q[(n + 1) * many..][..many], jet.inverse[n + 1].0);
+            for (next, velocity) in next.iter_mut().zip(&moving.v[n * many..]) {
+                *next = *velocity * inverse;
+            }
             points.coefficient(n, moving, pulls, ticker)?;
             for (at, pull) in pulls.iter().enumerate() {
                 rates.set(len + at, n, S::of(&(*pull * per_unit * per_unit)));
