@@ -52,8 +52,7 @@ pub(super) fn first_choice(
         matches!(forces, [force] if force.as_newtonian().is_some())
             || (!touching && (turns_linearly(forces) || is_held(forces, active, passive, groups)))
     };
-    let few =
-        |&(bodies, links): &(usize, usize)| bodies <= RING_MAX || (bodies <= MOST_JOINED && links <= bodies);
+    let few = |&(bodies, links): &(usize, usize)| bodies <= MOST_JOINED && links <= bodies.max(FEW_LINKS);
     let most = match groups {
         Groups::Listed(_) => groups.sizes(forces).iter().all(few),
         _ => active.len() <= RING_MAX,
