@@ -91,3 +91,43 @@ impl<V: Vector8> Lie<V> for [Eight] {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::lanes::as_numbers;
+
+    /// Nineteen links among twenty bodies, some of which many links join.
+    #[test]
+    fn links_act_in_their_order() {
+        let links: Vec<(usize, usize)> = (0..19).map(|n| ((7 * n + 3) % 20, (n * n) % 5 + 20)).collect();
+        let number = |n: usize| 1.0 / (3.0 + (n * n % 101) as f64);
+        let rows = |offset: usize| -> Vec<Lanes> {
+            (0..4)
+                .map(|row| Lanes(core::array::from_fn(|lane| number(offset + row * WIDTH + lane))))
+                .collect()
+        };
+        let (inverse_mass, place) = (rows(1), rows(40));
+        let eights: Vec<Eight> = links.chunks(WIDTH).map(|eight| Eight::new(eight, &inverse_mass)).collect();
+        let mut pulls = Vec::new();
+        for (register, eight) in links.chunks(WIDTH).enumerate() {
+            let difference: Lanes = eights[..].difference(register, &place);
+            for (lane, &(i, j)) in eight.iter().enumerate() {
+                assert_eq!(difference.0[lane], as_numbers(&place)[j] - as_numbers(&place)[i]);
+            }
+            pulls.push([difference, -difference]);
+        }
+        let (mut found, mut expected) = (rows(80).repeat(2), rows(80).repeat(2));
+        eights[..].add(&pulls, &inverse_mass, 4, &mut found);
+        let mass = as_numbers(&inverse_mass);
+        for (n, &(i, j)) in links.iter().enumerate() {
+            for (c, pull) in pulls[n / WIDTH].iter().enumerate() {
+                for (body, sign) in [(i, 1.0), (j, -1.0)] {
+                    let a = &mut expected[4 * c + body / WIDTH].0[body % WIDTH];
+                    *a = (sign * mass[body]).mul_add(pull.0[n % WIDTH], *a);
+                }
+            }
+        }
+        assert_eq!(found, expected);
+    }
+}
