@@ -88,6 +88,13 @@ SCENES: dict[str, vv.Scene] = {
         held(),
         vv.Gravity(0.3),
     ),
+    "a point on a damped spring": vv.Scene(
+        vv.Particles([1.0], [[2.0, 0.5, 0.0]], [[0.0, 0.5, 0.25]]),
+        held(),
+        vv.Spring(0, 1, k=2.0, length=1.0),
+        vv.Damper(0, 1, c=0.3),
+        DOWN,
+    ),
 }
 
 

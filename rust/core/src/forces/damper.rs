@@ -5,8 +5,10 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::links::series::{LinkLaw, LinkSeries, Numbers};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
+use super::series::Series;
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -66,6 +68,33 @@ impl Dampers {
         let coefficient = (0..count).map(|at| of_link(&c, at)).collect();
         Ok(Self { links: Links::new(count, &i, &j), coefficient })
     }
+
+    fn acting(&self, context: &Context<'_>) -> Kernel {
+        let linked = Linked::new(&self.links, context);
+        let number = |system: &System<'_>, at: usize| {
+            context.units.take(context.own(self, system).coefficient[at], COEFFICIENT)
+        };
+        Kernel { coefficient: linked.numbers(context, number), linked }
+    }
+}
+
+/// `c s'/(2s)` of the squared distance `s`, for the recurrences of its series.
+struct Law;
+
+impl LinkLaw for Law {
+    const EXPONENT: f64 = -1.0;
+    const BY_RATE: bool = true;
+    fn may_meet([coefficient, _]: Numbers<f64>) -> bool {
+        coefficient == 0.0
+    }
+    /// Its force goes on as it is where ends meet head on, and has no length.
+    fn near(_: Numbers<f64>) -> f64 {
+        0.0
+    }
+    #[inline(always)]
+    fn of_rate<V: Real>([coefficient, _]: Numbers<V>, unit: V) -> V {
+        coefficient * unit
+    }
 }
 
 impl ForceTerm for Dampers {
@@ -73,11 +102,18 @@ impl ForceTerm for Dampers {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let linked = Linked::new(&self.links, context);
-        let number = |system: &System<'_>, at: usize| {
-            context.units.take(context.own(self, system).coefficient[at], COEFFICIENT)
-        };
-        Box::new(Kernel { coefficient: linked.numbers(context, number), linked })
+        Box::new(self.acting(context))
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        let Kernel { linked, coefficient } = self.acting(context);
+        let nothing = vec![Lanes::zero(); coefficient.len()];
+        Some(Box::new(LinkSeries::<Law>::new(linked, [coefficient, nothing])))
+    }
+    fn series_in_every_lane(&self) -> bool {
+        true
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

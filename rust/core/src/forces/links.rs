@@ -9,6 +9,8 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
 
+pub(super) mod series;
+
 /// Pairs of bodies, in the order in which their links act.
 #[derive(Debug)]
 pub struct Links {

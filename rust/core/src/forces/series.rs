@@ -1,6 +1,9 @@
 //! What a force brings along so that motions under it can be expanded in Taylor series.
 
+pub(super) mod apart;
+pub(super) mod beside;
 mod linear;
+pub(super) mod pairs;
 
 use super::Dynamics;
 use crate::error::{Error, Result};

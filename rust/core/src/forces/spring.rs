@@ -5,6 +5,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::links::series::{LinkLaw, LinkSeries, Numbers};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
@@ -85,6 +86,18 @@ impl Springs {
         let spring = |at: usize| Spring { k: of_link(&k, at), length: of_link(&length, at) };
         Ok(Self { springs: (0..count).map(spring).collect(), links: Links::new(count, &i, &j) })
     }
+
+    fn acting(&self, context: &Context<'_>) -> Kernel {
+        let linked = Linked::new(&self.links, context);
+        let number = |system: &System<'_>, at: usize| context.own(self, system).springs[at];
+        Kernel {
+            k: linked.numbers(context, |system, at| context.units.take(number(system, at).k, STIFFNESS)),
+            length: linked
+                .numbers(context, |system, at| context.units.take(number(system, at).length, [1, 0, 0])),
+            long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
+            linked,
+        }
+    }
 }
 
 /// How much of the vector from one end to the other is the force on the first.
@@ -100,26 +113,25 @@ impl ForceTerm for Springs {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let linked = Linked::new(&self.links, context);
-        let number = |system: &System<'_>, at: usize| context.own(self, system).springs[at];
-        Box::new(Kernel {
-            k: linked.numbers(context, |system, at| context.units.take(number(system, at).k, STIFFNESS)),
-            length: linked
-                .numbers(context, |system, at| context.units.take(number(system, at).length, [1, 0, 0])),
-            long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
-            linked,
-        })
+        Box::new(self.acting(context))
     }
-    /// Without lengths springs are linear. With one, a spring that is pressed together to nothing on a line has a series
-    /// that goes on, and the force turns about.
+    /// Without lengths springs are linear.
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
-        LinearSeries::between_bodies(self.kernel(context), Some(self.kernel(context)))
+        let kernel = self.acting(context);
+        if kernel.long.contains(&true) {
+            let Kernel { linked, k, length, .. } = kernel;
+            return Some(Box::new(LinkSeries::<Law>::new(linked, [k, length])));
+        }
+        LinearSeries::between_bodies(Box::new(kernel), Some(self.kernel(context)))
     }
     fn series_in_every_lane(&self) -> bool {
         true
     }
     fn has_series(&self) -> bool {
-        self.springs.iter().all(|spring| spring.length == 0.0)
+        true
+    }
+    fn holds(&self, particle: usize) -> bool {
+        self.links.at(particle).any(|at| self.springs[at].k != 0.0)
     }
     fn potential_and_virial(
         &self,
@@ -192,6 +204,29 @@ impl ForceTerm for Springs {
             Some(units.take(spring.k, STIFFNESS) * extension.abs() / m.min(n))
         };
         Ok(self.links.between(bodies.iter().map(|&(body, ..)| body)).filter_map(of).fold(0.0, f64::max))
+    }
+}
+
+/// `k (1 - length s^(-1/2))` of the squared distance `s`, for the recurrences of its series.
+struct Law;
+
+/// Ends that are so small a part of its length apart as good as meet.
+const NOTHING: f64 = 64.0 * f64::EPSILON;
+
+impl LinkLaw for Law {
+    const EXPONENT: f64 = -0.5;
+    fn may_meet([_, length]: Numbers<f64>) -> bool {
+        length == 0.0
+    }
+    fn near([_, length]: Numbers<f64>) -> f64 {
+        NOTHING * length
+    }
+    #[inline(always)]
+    fn begin<V: Real>([k, length]: Numbers<V>, [square, inverse]: [V; 2], unit2: V) -> [V; 2] {
+        let (k, r) = (unit2 * k, square.sqrt());
+        let per_r = r * inverse;
+        let stretched = V::select(length.less_equal(V::zero()), V::one(), (r - length) * per_r);
+        [-(k * length) * per_r, k * stretched]
     }
 }
 

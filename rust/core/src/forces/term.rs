@@ -160,6 +160,11 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         false
     }
 
+    /// Whether it holds a body to another, so that they swing, and series take less time than other methods.
+    fn holds(&self, _particle: usize) -> bool {
+        false
+    }
+
     /// Whether its series has lane by lane what its kernel has.
     fn series_in_every_lane(&self) -> bool {
         false

@@ -29,6 +29,8 @@ pub struct Jet<S> {
     pub unit: S,
     /// One over the unit of time.
     pub per_unit: S,
+    /// 1, and -1 where time runs back.
+    pub forward: S,
     /// 1/n.
     pub(crate) inverse: Vec<Scaled<S>>,
 }
@@ -49,6 +51,7 @@ impl<S: Element> Jet<S> {
             t: S::zero(),
             unit: S::one(),
             per_unit: S::one(),
+            forward: S::one(),
             inverse,
         }
     }

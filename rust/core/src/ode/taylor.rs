@@ -228,6 +228,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Settled<S>> {
         self.jet.begin(state, clock.elapsed, self.unit);
+        self.jet.forward = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         system.expand(&mut self.jet, ticker)?;
         norm.inverse_tolerances(state, &clock.elapsed, &mut self.inverse_tolerances);
         let inverse = self.inverse_step(running, norm);

@@ -245,6 +245,10 @@ impl Plan {
             // Each massless body goes with the massive ones in a time of its own; they have no other bits for it.
             Groups::All if transformed.is_some() => active.len() <= RING_MAX,
             Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),
+            Groups::Listed(_) if matches!(method.scheme, Scheme::Taylor(_)) => {
+                (scene.copies > 1 || groups.sizes(&forces).len() > 1)
+                    && !series::links_abreast(&groups, &forces)
+            }
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
         let layout = if batched { Layout::Batched } else { Layout::Packed };

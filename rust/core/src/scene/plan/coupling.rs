@@ -49,6 +49,26 @@ impl Groups {
         if listed.is_empty() { Self::Single } else { Self::Listed(listed) }
     }
 
+    /// The bodies of each group, and the pairs that forces list between them.
+    pub(super) fn sizes(&self, forces: &[Arc<dyn ForceTerm>]) -> Vec<(usize, usize)> {
+        let Self::Listed(groups) = self else { return Vec::new() };
+        let mut sizes: Vec<(usize, usize)> = groups.iter().map(|group| (group.len(), 0)).collect();
+        let of: BTreeMap<usize, usize> = groups
+            .iter()
+            .enumerate()
+            .flat_map(|(place, group)| group.iter().map(move |&body| (body, place)))
+            .collect();
+        for force in forces {
+            let Coupling::Listed(pairs) = force.coupling() else { continue };
+            for (body, _) in pairs {
+                if let Some(size) = of.get(&body).and_then(|&place| sizes.get_mut(place)) {
+                    size.1 += 1;
+                }
+            }
+        }
+        sizes
+    }
+
     /// The most bodies of a group.
     pub fn largest(&self, particles: usize) -> usize {
         match self {

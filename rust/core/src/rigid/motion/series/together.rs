@@ -173,7 +173,7 @@ impl<S: Held> Bodies<S> {
             self.points = Jet::new(many, jet.order);
         }
         (self.points.t, self.points.unit, self.points.per_unit) = (jet.t, jet.unit, per_unit);
-        self.points.order = jet.order;
+        (self.points.order, self.points.forward) = (jet.order, jet.forward);
         for n in 0..=jet.order {
             for number in 0..len {
                 self.rates.set(number, n, S::of(&jet.q[n * len + number]));
@@ -187,6 +187,11 @@ impl<S: Held> Bodies<S> {
             moving.q[n * many..][..many].copy_from_slice(&now[..many]);
             for (into, velocity) in moving.v[n * many..][..many].iter_mut().zip(&now[half..]) {
                 *into = *velocity * jet.unit;
+            }
+            // Forces may look at the places of the next order, which velocities tell.
+            let (next, inverse) = (&mut moving.q[(n + 1) * many..][..many], jet.inverse[n + 1].0);
+            for (next, velocity) in next.iter_mut().zip(&moving.v[n * many..]) {
+                *next = *velocity * inverse;
             }
             points.coefficient(n, moving, pulls, ticker)?;
             for (at, pull) in pulls.iter().enumerate() {
