@@ -53,10 +53,10 @@ class Runnable(Shown, ABC, Generic[_Result]):
             scene. An end time alone records the start and the end.
         method : str or Method, optional
             One of `visviva.methods`, or its name. ``"auto"`` takes a closed form where there is one, else ``"taylor"``
-            for up to eight massive bodies under gravity alone, where springs hold all bodies, under forces that are
-            linear in places and velocities, beside formulas (`ExpressionForce`) of polynomials, sines and cosines, and
-            for rigid bodies that nothing but their weight and torques along their axes turn, ``"dop853"`` beside other
-            formulas, of which its shorter steps see more, else ``"verner98"``. A method named here always runs.
+            for up to eight massive bodies under gravity alone, where few springs hold all bodies, under forces that
+            are linear in places and velocities, beside formulas (`ExpressionForce`) of polynomials, sines and cosines,
+            and for rigid bodies that nothing but their weight and torques along their axes turn, ``"dop853"`` beside
+            other formulas, of which its shorter steps see more, else ``"verner98"``. A method named here always runs.
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         time_transformation : {"potential_energy", "distance"}, optional
