@@ -54,7 +54,7 @@ class Runnable(Shown, ABC, Generic[_Result]):
         method : str or Method, optional
             One of `visviva.methods`, or its name. ``"auto"`` takes a closed form where there is one, else ``"taylor"``
             for up to eight massive bodies or charges that attract or repel each other, alone or in uniform, electric
-            and magnetic fields and rotating frames, where springs hold all bodies, under forces that are linear in
+            and magnetic fields and rotating frames, where few springs hold all bodies, under forces that are linear in
             places and velocities, beside formulas (`ExpressionForce`) of polynomials, sines and cosines, and for rigid
             bodies that nothing but their weight and torques along their axes turn, ``"dop853"`` beside other formulas,
             of which its shorter steps see more, else ``"verner98"``. A method named here always runs.
