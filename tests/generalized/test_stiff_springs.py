@@ -63,7 +63,7 @@ def test_equal_steps_that_resolve_the_spring_are_taken(part: float, momenta: boo
 def test_shaking_below_the_rounding_of_a_polynomial_is_followed_too(
     method: str, offset: float, stiffness: float, start: float
 ) -> None:
-    """Vibrations of 1e-8 and less, far from the origin: what noise hides of them was off by 1e-9, their velocity by 1e-5."""
+    """Vibrations of 1e-8 and less, far off: places were off by 1e-9 where noise hid them, and velocities by 1e-5."""
     x, y, t = vv.coordinate("x"), vv.coordinate("y"), vv.time
     potential = stiffness * (sympy.sqrt((x - offset) ** 2 + y**2) - 1) ** 2 / 2 + GRAVITY * y
     kinetic = (x.diff(t) ** 2 + y.diff(t) ** 2) / 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from visviva._keywords import known_keywords
@@ -54,9 +53,8 @@ def free_name(name: str, taken: Collection[str]) -> str:
     return name
 
 
-@cache
-def _symbol_of_time() -> Any:
-    return sympy().Symbol("t")
+#: SymPy's symbol of the time, once it was asked for.
+_OF_TIME: list[Any] = []
 
 
 class _Time:
@@ -65,7 +63,9 @@ class _Time:
     __slots__ = ()
 
     def _sympy_(self) -> Any:
-        return _symbol_of_time()
+        if not _OF_TIME:
+            _OF_TIME.append(sympy().Symbol("t"))
+        return _OF_TIME[0]
 
     def __repr__(self) -> str:
         return "t"
