@@ -50,11 +50,11 @@ fn noise_of(samples: &[f64; WIDTH]) -> f64 {
 
 /// The noise of each rate of one trajectory.
 pub(super) fn of_one(machine: &mut Machine<Lanes>, t: f64, y: &[f64], noise: &mut [f64]) {
-    let numbers = y.len();
     for (index, (register, &y)) in machine.state().iter_mut().zip(y).enumerate() {
         *register = Lanes(core::array::from_fn(|sample| off(y, index, sample)));
     }
-    machine.run(Lanes(core::array::from_fn(|sample| off(t, numbers, sample))));
+    // Times that are too far apart are told of as such.
+    machine.run(Lanes([t; WIDTH]));
     for (index, noise) in noise.iter_mut().enumerate() {
         *noise = noise_of(&machine.output(index).0);
     }
@@ -71,8 +71,8 @@ pub(super) fn of_eight(
     let mut samples = vec![[[0.0; WIDTH]; WIDTH]; noise.len()];
     for first in (0..WIDTH).step_by(AT_ONCE) {
         machine.run_apart(|register, block| {
-            let number = y.get(register).copied().unwrap_or(t);
-            Lanes(number.0.map(|number| off(number, register, first + block)))
+            let sample = |number: &Lanes| Lanes(number.0.map(|number| off(number, register, first + block)));
+            y.get(register).map_or(t, sample)
         });
         for (index, samples) in samples.iter_mut().enumerate() {
             for block in 0..AT_ONCE {
