@@ -44,6 +44,7 @@ pub use term::{ForceDeclaration, ForceTerm};
 
 use crate::error::Result;
 use crate::numerics::element::{Element, PairMut, Shape};
+use crate::numerics::real::Mask;
 use crate::ode::Method;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
@@ -118,10 +119,10 @@ pub trait Force<S: Element>: Send {
         Ok(None)
     }
 
-    /// As [`System::is_calm`], of this force.
-    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+    /// As [`System::calm`], of this force.
+    fn calm(&mut self, step: &Taken<'_, S>, times: f64) -> S::Mask {
         let _ = (step, times);
-        true
+        S::Mask::splat(true)
     }
 
     /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
@@ -241,8 +242,9 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         Ok(until)
     }
 
-    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
-        self.forces.iter_mut().all(|force| force.is_calm(step, times))
+    fn calm(&mut self, step: &Taken<'_, S>, times: f64) -> S::Mask {
+        let all = self.forces.iter_mut().map(|force| force.calm(step, times));
+        all.fold(S::Mask::splat(true), |all, own| all.and(own))
     }
 
     fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {

@@ -97,17 +97,10 @@ impl<S: Width + Controlled> Ends<S> {
         (!all).then_some(told)
     }
 
-    /// Whether nothing would have been to be followed in a step as long as this, if rates were what they are at the ends of the last.
-    pub(super) fn is_calm(
-        &self,
-        asked: S::Mask,
-        h: &S,
-        (little, gap): (f64, f64),
-        at_ends: &[AtEnds],
-    ) -> bool {
-        let (told, all) =
-            S::pass(Little { before: &self.before, after: &self.after, at_ends, h, little, gap });
-        all || !asked.and(told.less(S::one())).any()
+    /// Where nothing would have been to be followed in a step as long as this, if rates were what they are at the ends of the last.
+    pub(super) fn calm(&self, h: &S, (little, gap): (f64, f64), at_ends: &[AtEnds]) -> S::Mask {
+        let (told, _) = S::pass(Little { before: &self.before, after: &self.after, at_ends, h, little, gap });
+        S::one().less_equal(told)
     }
 
     /// Between what values arguments stay in a lane of the step that was told of, and whether they move little.

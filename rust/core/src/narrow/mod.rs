@@ -21,7 +21,7 @@ use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken};
 use ends::Ends;
 pub use features::{Equations, Features};
-use search::{Asked, Search};
+use search::{Criteria, Search};
 use std::sync::Arc;
 use way::Way;
 use weak::Weak;
@@ -34,6 +34,8 @@ pub const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscilla
 pub const REACH: f64 = 3.0;
 /// The same of equal steps, which are as coarse as they were asked for.
 const REACH_OF_EQUAL: f64 = 6.0;
+/// The same of waves in equal steps, by what they turn: two looks in a turn tell it from none.
+const REACH_OF_EQUAL_WAVES: f64 = core::f64::consts::PI;
 /// The same of a series, which knows e²⁰ times what it begins with by its last coefficients.
 const REACH_OF_SERIES: f64 = 20.0;
 /// What may be unseen in equal steps, as a part of a number.
@@ -132,26 +134,25 @@ impl<S: Width + Controlled> Narrow<S> {
             return self.followed(step);
         }
         let gap = self.gap(step);
-        // Of waves in equal steps two looks are asked for in a turn.
-        let reach = if self.equal { SHARE * self.reach(step) } else { self.reach(step) };
+        let reach = if self.equal { REACH_OF_EQUAL_WAVES } else { self.reach(step) };
         let moves_little = (self.fastest * step.h.abs()).less_equal(S::splat(reach / gap));
         let asked = step.asked.and(moves_little.not());
         if asked.any() { self.followed(&Taken { asked, ..*step }) } else { Ok(None) }
     }
 
-    /// Whether steps so many times as long as the last one would have seen as much: [`System::is_calm`](crate::ode::system::System::is_calm).
-    pub fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+    /// [`System::calm`](crate::ode::system::System::calm).
+    pub fn calm(&mut self, step: &Taken<'_, S>, times: f64) -> S::Mask {
         let (h, reach, gap) = (step.h * S::splat(times), SHARE * self.reach(step), self.gap(step));
         if self.of.steady {
-            return (self.fastest * h.abs()).less_equal(S::splat(reach / gap)).all();
+            return (self.fastest * h.abs()).less_equal(S::splat(reach / gap));
         }
-        self.ends.is_calm(step.asked, &h, (reach, gap), &self.of.at_ends)
+        self.ends.calm(&h, (reach, gap), &self.of.at_ends)
     }
 
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
         let little = (SHARE * self.reach(step), self.gap(step));
-        let asked = Asked { reach: self.reach(step), equal: self.equal, tolerance: self.tolerance };
+        let criteria = Criteria { reach: self.reach(step), equal: self.equal, tolerance: self.tolerance };
         let Some(told) = self.ends.tell(step, self.t0, little, &self.of.at_ends) else { return Ok(None) };
         let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
         for lane in (0..S::LANES).filter(|&lane| told.lane(lane) == 0.0) {
@@ -168,7 +169,7 @@ impl<S: Width + Controlled> Narrow<S> {
             }
             let way = Way::of(self.form, step, lane, self.t0);
             let search = self.search.get_or_insert_with(|| Search::new(of));
-            let part = search.seen_until(&parameters, way, asked);
+            let part = search.seen_until(&parameters, way, criteria);
             seen = seen.with_lane(lane, part);
         }
         if !seen.less(S::one()).any() {

@@ -5,12 +5,11 @@
 //! method looks. What differs from both, for as long as the argument moves by 1, is an impulse that nobody feels; small beside what
 //! it pushes, it may stay so.
 
-use super::Features;
 use super::features::{AtEnds, Fades};
 use super::way::Way;
+use super::{Features, REACH_OF_EQUAL_WAVES};
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
-use core::f64::consts::PI;
 use std::sync::Arc;
 
 /// Between two places where a method looks arguments are sampled at least twice, and so densely.
@@ -35,10 +34,10 @@ const MOST: f64 = 0.9;
 /// Of a number that is small beside others this part of them is its size.
 const SMALLEST_SIZE: f64 = 1e-8;
 
-/// What is asked of a way.
+/// What is unseen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
-    /// By how much an argument moves that is followed: of a wave in equal steps half a turn, which two looks tell from none.
+pub(super) struct Criteria {
+    /// By how much an argument moves that is followed.
     pub(super) reach: f64,
     /// Whether steps are equal: they are not to be shorter, and what they see too coarsely is not unseen.
     pub(super) equal: bool,
@@ -92,14 +91,14 @@ impl Search {
     }
 
     /// The part of a way on which nothing that matters is unseen, short of what is.
-    pub(super) fn seen_until(&mut self, parameters: &[f64], way: Way, asked: Asked) -> f64 {
+    pub(super) fn seen_until(&mut self, parameters: &[f64], way: Way, criteria: Criteria) -> f64 {
         if self.parameters != parameters {
             let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             self.values.set_parameters(&wide);
             self.rates.set_parameters(&wide);
             self.parameters.copy_from_slice(parameters);
         }
-        let mut pieces = self.pieces(&way, asked);
+        let mut pieces = self.pieces(&way, criteria);
         pieces.sort_by(|a, b| a.from.theta.total_cmp(&b.from.theta));
         let sizes = sizes(&way, self.of.rates.outputs());
         let mut first = f64::INFINITY;
@@ -107,7 +106,7 @@ impl Search {
             if piece.from.theta >= first {
                 break;
             }
-            if let Some(theta) = self.unseen(&way, &piece, &sizes, asked)
+            if let Some(theta) = self.unseen(&way, &piece, &sizes, criteria)
                 && theta < first
             {
                 first = theta;
@@ -130,7 +129,7 @@ impl Search {
 
     /// The pieces of the way on which arguments move by more than the reach between two places where the method looks. Equal steps
     /// that go through poles tell more than that something was unseen.
-    fn pieces(&mut self, way: &Way, Asked { reach, equal, .. }: Asked) -> Vec<Piece> {
+    fn pieces(&mut self, way: &Way, Criteria { reach, equal, .. }: Criteria) -> Vec<Piece> {
         let mut places = vec![0.0];
         for looks in way.nodes.windows(2) {
             let parts = ((looks[1] - looks[0]) / SPACING).ceil().max(2.0);
@@ -173,7 +172,7 @@ impl Search {
                 let least = points.iter().fold(f64::INFINITY, |least, p| least.min(p.u));
                 let most = points.iter().fold(f64::NEG_INFINITY, |most, p| most.max(p.u));
                 let is_wave = self.of.fades[argument] == Fades::Nowhere;
-                let reach = at_ends.reach(if equal && is_wave { PI } else { reach });
+                let reach = at_ends.reach(if equal && is_wave { REACH_OF_EQUAL_WAVES } else { reach });
                 if most - least <= reach || self.of.fades[argument].holds(least, most) {
                     continue;
                 }
@@ -193,13 +192,13 @@ impl Search {
         (mut from, mut to): (f64, f64),
         is_top: bool,
     ) -> Turning {
-        let mut is_sharp = false;
+        let mut found = [f64::NAN; WIDTH];
         let mut best = Point { theta: from, u: f64::NAN };
         for _ in 0..TURNING_ROUNDS {
             let part = (to - from) / (WIDTH + 1) as f64;
             let thetas: [f64; WIDTH] = core::array::from_fn(|k| from + part * (k + 1) as f64);
             way.run(&thetas, &mut self.values);
-            let found = self.values.output(argument).0;
+            found = self.values.output(argument).0;
             best = Point { theta: thetas[0], u: found[0] };
             for (&theta, &u) in thetas.iter().zip(&found) {
                 if if is_top { u > best.u } else { u < best.u } {
@@ -207,13 +206,12 @@ impl Search {
                 }
             }
             (from, to) = (best.theta - part, best.theta + part);
-            is_sharp = found.iter().any(|u| (u - best.u).abs() > SHARP);
         }
-        Turning { at: best, is_sharp }
+        Turning { at: best, is_sharp: found.iter().any(|u| (u - best.u).abs() > SHARP) }
     }
 
     /// The first place of a piece at which what no look sees matters.
-    fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], asked: Asked) -> Option<f64> {
+    fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], criteria: Criteria) -> Option<f64> {
         let levels = levels(piece.from.u, piece.to.u);
         let looks = self.functions_at(way, &lanes(&piece.looks));
         let mut last = piece.from;
@@ -224,7 +222,7 @@ impl Search {
             if (index + 1) * AT_ONCE >= levels.len() {
                 points.push(piece.to);
             }
-            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, asked)) {
+            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, criteria)) {
                 return Some(theta);
             }
             last = points[points.len() - 1];
@@ -238,7 +236,7 @@ impl Search {
         way: &Way,
         piece: &Piece,
         (looks, points): (&[Lanes], &[Point]),
-        (sizes, Asked { tolerance, equal, .. }): (&[f64], Asked),
+        (sizes, Criteria { tolerance, equal, .. }): (&[f64], Criteria),
     ) -> Option<f64> {
         let thetas: Vec<f64> = points.iter().map(|point| point.theta).collect();
         let thetas = lanes(&thetas);

@@ -148,6 +148,23 @@ pub struct Multistep {
     pub fewest_steps: f64,
 }
 
+/// Whether a part of a step is within it.
+fn is_inside(part: &f64) -> bool {
+    *part > 0.0 && *part < 1.0
+}
+
+impl Splitting {
+    /// Where a step kicks, as parts of it, as far as that is within it.
+    pub fn looks(&self) -> Vec<f64> {
+        let drifted = self.drifts.iter().scan(0.0, |place, drift| {
+            *place += drift.high();
+            Some(*place)
+        });
+        let kicks = self.kicks.iter().skip(1).zip(drifted).filter(|(kick, _)| kick.high() != 0.0);
+        kicks.map(|(_, place)| place).filter(is_inside).collect()
+    }
+}
+
 /// Steps in a period below which a one-step method tells nothing of an oscillator: leapfrog is unstable below π.
 pub const FEWEST_STEPS: f64 = 6.0;
 
@@ -209,17 +226,11 @@ impl Method {
 
     /// Where an equal step of it looks at forces, as parts of the step, as far as that is within it.
     pub fn looks(&self) -> Vec<f64> {
-        let inside = |place: &f64| *place > 0.0 && *place < 1.0;
         match &self.scheme {
             Scheme::Splitting(table) | Scheme::NystromSplitting(table) | Scheme::Boris(table) => {
-                let drifted = table.drifts.iter().scan(0.0, |place, drift| {
-                    *place += drift.high();
-                    Some(*place)
-                });
-                let kicks = table.kicks.iter().skip(1).zip(drifted);
-                kicks.filter(|(kick, _)| kick.high() != 0.0).map(|(_, place)| place).filter(inside).collect()
+                table.looks()
             }
-            Scheme::RungeKutta(table) => table.c.iter().map(|c| c.high()).filter(inside).collect(),
+            Scheme::RungeKutta(table) => table.c.iter().map(|c| c.high()).filter(is_inside).collect(),
             Scheme::Multistep(_) | Scheme::Embedded(_) | Scheme::Taylor(_) => Vec::new(),
         }
     }

@@ -10,6 +10,7 @@ use super::stepper::Stepper;
 use super::transformation::Monitor;
 use crate::error::{Error, Result};
 use crate::numerics::element::{Element, PairMut};
+use crate::numerics::real::Mask;
 use crate::parallel::Ticker;
 
 /// The form of a system's equations.
@@ -212,11 +213,11 @@ pub trait System<S: Element>: Send {
         Ok(None)
     }
 
-    /// Whether nothing would have been unseen in a step so many times as long as the one that was last
-    /// [asked of](Self::seen_until), if all went on as it does there: then a few steps may go unasked.
-    fn is_calm(&mut self, step: &Taken<'_, S>, times: f64) -> bool {
+    /// The lanes in which nothing would have been unseen in a step so many times as long as the one that was last
+    /// [asked of](Self::seen_until), if all went on as it does there: in those a few steps may go unasked.
+    fn calm(&mut self, step: &Taken<'_, S>, times: f64) -> S::Mask {
         let _ = (step, times);
-        true
+        S::Mask::splat(true)
     }
 
     /// How long a step of a system of the second order may be from a state with these accelerations, if something on the

@@ -205,6 +205,8 @@ pub struct Transformed<S> {
     /// How long the last step is, also where the end comes before its own, and W at both of its ends.
     length: S,
     weights: [S; 2],
+    /// Where a step looks.
+    looks: Vec<f64>,
     /// The parts of the step up to which nothing lies unseen in it, if something does.
     seen: Option<S>,
     /// Evaluations of a step, and whether its first is the last of the one before it.
@@ -243,6 +245,7 @@ impl<S: Controlled> Transformed<S> {
             beside,
             length: zero,
             weights: [zero; 2],
+            looks: table.looks(),
             seen: None,
             evaluations: kicks - u64::from(shared),
             shared,
@@ -333,7 +336,7 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         self.weights = [first, moves.weight(next, next_beside, system)?];
         self.length = taken.0 + taken.1;
         let before = *clock;
-        let mut outcome = S::pass(Passing { clock, running, taken: &taken, forward: &self.dt });
+        let outcome = S::pass(Passing { clock, running, taken: &taken, forward: &self.dt });
         if outcome.finished.any() {
             self.meet(outcome.h, from, state, system, ticker)?;
             self.next.0.take_over(&self.between.0, outcome.finished);
@@ -345,15 +348,14 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
             finite = S::Mask::splat(finite.all());
         }
         let ends = [state.all().0, self.next.0.all().0];
-        let step = Taken::from_end_to_end(outcome.accepted.and(finite), (from, outcome.h), ends);
-        self.seen = system.seen_until(&step)?;
+        let whole = Taken::from_end_to_end(outcome.accepted.and(finite), (from, outcome.h), ends);
+        // Parts of the step in the other time are about as long in time.
+        self.seen = system.seen_until(&Taken { nodes: &self.looks, ..whole })?;
         finite = finite.and(self.passed_over().not());
         let lost = outcome.accepted.and(finite.not());
         clock.elapsed = S::select(lost, before.elapsed, clock.elapsed);
-        outcome.accepted = outcome.accepted.and(finite);
-        outcome.finished = outcome.finished.and(finite);
-        outcome.stuck = outcome.stuck.or(lost);
-        Ok(outcome)
+        let (accepted, finished) = (outcome.accepted.and(finite), outcome.finished.and(finite));
+        Ok(Settled { accepted, finished, stuck: outcome.stuck.or(lost), ..outcome })
     }
 
     fn next(&self) -> &State<S> {

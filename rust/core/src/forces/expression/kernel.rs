@@ -8,7 +8,7 @@ use crate::expressions::execute::{self, Part, Scalar};
 use crate::forces::context::Context;
 use crate::forces::{Adds, Force, Phase};
 use crate::numerics::element::Shape;
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 use crate::ode::system::{Needs, Taken};
@@ -170,7 +170,7 @@ impl Force<Lanes> for Kernel {
     fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
         self.unseen.as_mut().map_or(Ok(None), |unseen| unseen.seen_until(step))
     }
-    fn is_calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> bool {
-        self.unseen.as_mut().is_none_or(|unseen| unseen.is_calm(step, times))
+    fn calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> Bits {
+        self.unseen.as_mut().map_or(Bits(0xff), |unseen| unseen.calm(step, times))
     }
 }

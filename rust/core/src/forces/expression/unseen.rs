@@ -8,7 +8,7 @@ use super::{ExpressionForce, VARIABLES};
 use crate::error::Result;
 use crate::forces::context::{Arrangement, Context};
 use crate::narrow::{Narrow, Stepped};
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken, Visited};
@@ -87,17 +87,22 @@ impl Unseen {
             Arrangement::Batched => until,
         }))
     }
-}
 
-impl Unseen {
-    /// As [`System::is_calm`](crate::ode::system::System::is_calm).
-    pub(super) fn is_calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> bool {
-        let Self { way, rows, .. } = self;
+    /// As [`System::calm`](crate::ode::system::System::calm).
+    pub(super) fn calm(&mut self, step: &Taken<'_, Lanes>, times: f64) -> Bits {
+        let Self { way, rows, arrangement } = self;
         let h = step.h * Lanes::splat(way.time);
-        rows.iter_mut().zip(&way.force).all(|(narrow, force)| {
+        let mut calm = Bits(0xff);
+        for (narrow, force) in rows.iter_mut().zip(&way.force) {
             let asked = step.asked.and(Lanes::zero().less(*force));
-            !asked.any() || narrow.is_calm(&Taken { asked, h, ..*step }, times)
-        })
+            if asked.any() {
+                calm = calm.and(narrow.calm(&Taken { asked, h, ..*step }, times).or(asked.not()));
+            }
+        }
+        match arrangement {
+            Arrangement::Packed => Bits::splat(calm.all()),
+            Arrangement::Batched => calm,
+        }
     }
 }
 

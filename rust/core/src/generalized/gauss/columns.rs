@@ -189,9 +189,7 @@ fn set_scales<V: Vector8>(
         let size = V::load(columns.tried[i]).max(least);
         let scale = V::select(V::zero().less(size), V::one() / size, V::zero());
         columns.scales[i] = V::select(running, scale, V::load(columns.scales[i])).store();
-        let noise_of = V::load(columns.noise[i]);
-        let cap = V::splat(noise::AS_ROUNDING) / (noise_of * h.abs());
-        let cap = V::select(V::zero().less(noise_of), cap, V::splat(f64::INFINITY));
+        let cap = noise::cap(V::load(columns.noise[i]), h);
         columns.measures[i] = V::load(columns.scales[i]).min(cap).store();
     }
 }

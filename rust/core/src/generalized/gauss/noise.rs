@@ -10,6 +10,7 @@ use super::step::{Iterated, Work, found};
 use crate::expressions::Machine;
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::Real;
 use crate::ode::system::Form;
 
 /// Stages that change no more than this, as parts of sizes, may be held up by noise.
@@ -24,11 +25,13 @@ pub(super) fn most(largest: f64, (form, h): (Form, f64)) -> f64 {
 }
 
 /// What noise is measured as at most: changes that stand still eight times above it are rounding.
-pub(super) const AS_ROUNDING: f64 = ROUND_OFF / 8.0;
+const AS_ROUNDING: f64 = ROUND_OFF / 8.0;
 
 /// What a change is measured by at most, inverted: noise is then as rounding is.
-pub(super) fn cap(noise: f64, h: f64) -> f64 {
-    if noise > 0.0 { AS_ROUNDING / (noise * h.abs()) } else { f64::INFINITY }
+#[inline(always)]
+pub(super) fn cap<V: Real>(noise: V, h: V) -> V {
+    let cap = V::splat(AS_ROUNDING) / (noise * h.abs());
+    V::select(V::zero().less(noise), cap, V::splat(f64::INFINITY))
 }
 
 /// A number with its last digit off: to which side, of eight samples, no two of seven numbers have alike.

@@ -113,11 +113,15 @@ impl Pace {
             Steps::Chosen { tolerance, delta, band, .. } => {
                 // It passes through zero at times.
                 let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
-                let unresolved = self.resolving.is_some_and(|part| part < HARDLY_RESOLVING);
-                let strays = unresolved || self.strays(delta, band);
+                let strays = self.unresolved().is_some() || self.strays(delta, band);
                 !self.converged || strays || ending.met(self.missed, astray, tolerance)
             }
         }
+    }
+
+    /// The part of the step that resolves the fastest motion, if all of it does not.
+    fn unresolved(&self) -> Option<f64> {
+        self.resolving.filter(|part| *part < HARDLY_RESOLVING)
     }
 
     /// Whether it is to be asked how much a step misses: of one that δ does not refuse.
@@ -198,8 +202,8 @@ impl Pace {
             Steps::Chosen { delta, band, .. } if self.converged && self.strays(delta, band) => {
                 h * Real::max(self.factor(delta, table), 0.2)
             }
-            Steps::Chosen { .. } if self.converged && self.resolving.is_some() => {
-                h * self.resolving.map_or(0.4, |part| Real::max(Real::min(part, 0.8), 0.2))
+            Steps::Chosen { .. } if self.converged => {
+                h * self.unresolved().map_or(0.4, |part| Real::max(part, 0.2))
             }
             _ => h * 0.4,
         }

@@ -138,6 +138,7 @@ impl GaussStep {
         (iterated, known)
     }
 
+    /// Measures the noise of rates.
     fn look_for_noise(&mut self, t: f64, state: &State<f64>) {
         noise::of_one(&mut self.machine, t, state.all().0, &mut self.stages.noise);
         self.evaluations += 1;

@@ -249,7 +249,12 @@ impl Recorder<Lanes> for Records<'_> {
     }
 
     fn looks_again_at(&self) -> u64 {
-        if self.watches.iter().any(Option::is_some) { 0 } else { self.passed_over.calm_until }
+        // Events are looked for in each step.
+        if self.watches.iter().any(Option::is_some) {
+            0
+        } else {
+            self.passed_over.calm_until(self.under_way())
+        }
     }
 
     #[inline(always)]
@@ -268,7 +273,8 @@ impl Recorder<Lanes> for Records<'_> {
         let from = self.step * node as f64;
         let to = part.map_or_else(|| self.step * (node + 1) as f64, |part| from + part);
         let (span, steps) = (Span { from, to }, node + u64::from(part.is_none()));
-        let over = self.passed_over.lanes([before, after], ((from, to - from), steps), system)?;
+        let running = self.under_way();
+        let passed = self.passed_over.lanes([before, after], ((from, to - from), node), running, system)?;
         let between = self.between.get_or_insert_with(|| before.clone());
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
         // Whose watches must look, and which of them are where the step begins.
@@ -279,6 +285,7 @@ impl Recorder<Lanes> for Records<'_> {
                 *block = abreast.step(Bits(0xff), &length, after);
             }
         }
+        let taken_so_far = steps - self.job.plan.from;
         let step = part.unwrap_or(self.step);
         let mut inside = Shadow { stepper, system, node, before, between, last: None, step };
         let mut going = false;
@@ -289,8 +296,8 @@ impl Recorder<Lanes> for Records<'_> {
                 continue;
             }
             let begun = inside.system.evaluations();
-            if over.lane(lane % WIDTH) {
-                let counts = Counts { steps, rejected: 0, evaluations: begun - repeated };
+            if passed.lane(lane % WIDTH) {
+                let counts = Counts { steps: taken_so_far, rejected: 0, evaluations: begun - repeated };
                 let counts = paid_by(lane, counts, &self.looks);
                 self.passed_over.end(self.job, (unit, lane), (before, node), counts);
                 (self.failed[lane], self.ended[lane]) = (Some(self.rows), true);
@@ -317,7 +324,7 @@ impl Recorder<Lanes> for Records<'_> {
             self.running -= usize::from(self.ended[lane]);
             going |= !over;
             if over {
-                let counts = Counts { steps, rejected: 0, evaluations: evaluations - repeated };
+                let counts = Counts { steps: taken_so_far, rejected: 0, evaluations: evaluations - repeated };
                 self.spent[lane] = Some(paid_by(lane, counts, &self.looks));
             }
         }

@@ -1,4 +1,6 @@
-//! Steps of eight trajectories whose rates are noisy, as of one.
+//! Steps of eight trajectories whose rates are noisy.
+//!
+//! The one idea: lanes in trouble are asked for their noise, and go on beside it, under a mask, as [`noise`] has it for one.
 
 use super::super::columns::{Settled, Work, found};
 use super::super::columns_end::advance;
@@ -59,6 +61,7 @@ impl GaussEight {
         (iterated, known)
     }
 
+    /// Measures the noise of rates in these lanes.
     pub(super) fn look_for_noise(&mut self, t: Lanes, state: &State<Lanes>, lanes: Bits) {
         if !lanes.any() {
             return;

@@ -2,18 +2,19 @@
 //!
 //! The one idea: steps that are chosen are taken again, shorter ones; of those that were asked for nothing is left but to tell.
 
-use super::place;
+use super::{Records, place};
 use crate::error::Result;
-use crate::numerics::lanes::{Bits, Lanes};
-use crate::numerics::real::Real;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 use crate::ode::system::{System, Taken};
 use crate::scene::integrate::Job;
 use crate::scene::integrate::report::{Counts, Ending, Report};
+use crate::scene::layout::Layout;
 use crate::scene::unit::Prepared;
 
-/// So many steps go unasked where nothing would be unseen in one …
-const UNASKED: u64 = 7;
+/// Up to the next node of which this is a divisor steps go unasked where nothing would be unseen in one …
+const UNASKED: u64 = 8;
 /// … so many times as long: rates may grow fourfold meanwhile.
 const CALM: f64 = 32.0;
 
@@ -24,15 +25,15 @@ pub(super) struct PassedOver {
     reports: Vec<Option<Report>>,
     /// Where a step looks.
     looks: Vec<f64>,
-    /// The node up to which nothing is looked for.
-    pub(super) calm_until: u64,
+    /// The nodes up to which nothing is looked for, lane by lane: a copy is asked where it is alone.
+    calm_until: [u64; WIDTH],
 }
 
 impl PassedOver {
     /// Of so many units of a run.
     pub(super) fn new(job: &Job<'_>, units: usize) -> Self {
         if job.plan.passes_over() {
-            Self { reports: vec![None; units], looks: job.plan.method.looks(), calm_until: 0 }
+            Self { reports: vec![None; units], looks: job.plan.method.looks(), calm_until: [0; WIDTH] }
         } else {
             Self::default()
         }
@@ -43,7 +44,14 @@ impl PassedOver {
         !self.reports.is_empty()
     }
 
-    /// The lanes that a step from the first to the second state, at `from` and for `h`, to a node, has led over something unseen.
+    /// The node up to which none of the lanes that run is asked.
+    pub(super) fn calm_until(&self, running: Bits) -> u64 {
+        let until = self.calm_until.iter().enumerate().filter(|(lane, _)| running.lane(*lane));
+        until.map(|(_, &until)| until).min().unwrap_or_default()
+    }
+
+    /// The lanes among those that run that a step from the first to the second state, at `from` and for `h`, from a node, has led
+    /// over something unseen.
     ///
     /// # Errors
     /// As [`System::seen_until`].
@@ -51,23 +59,30 @@ impl PassedOver {
         &mut self,
         [before, after]: [&State<Lanes>; 2],
         ((from, h), node): ((f64, f64), u64),
+        running: Bits,
         system: &mut dyn System<Lanes>,
     ) -> Result<Bits> {
-        if !self.looks() {
+        let due = |asked: Bits, lane: usize| {
+            if self.calm_until[lane] <= node { asked.or(Bits(1 << lane)) } else { asked }
+        };
+        let asked = running.and((0..WIDTH).fold(Bits(0), due));
+        if !self.looks() || !asked.any() {
             return Ok(Bits(0));
         }
         let (times, ends) = ((Lanes::splat(from), Lanes::splat(h)), [before.all().0, after.all().0]);
-        let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(Bits(0xff), times, ends) };
+        let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(asked, times, ends) };
         let points = system.form().evaluated();
         let seen = if before.q().len() > points {
             taken.ask_first_of_halves(points, system)?
         } else {
             system.seen_until(&taken)?
         };
-        if seen.is_none() && system.is_calm(&taken, CALM) {
-            self.calm_until = node + UNASKED;
+        let over = asked.and(seen.map_or(Bits(0), |seen| seen.less(Lanes::one())));
+        let calm = asked.and(over.not()).and(system.calm(&taken, CALM));
+        for lane in (0..WIDTH).filter(|&lane| calm.lane(lane)) {
+            self.calm_until[lane] = ((node + 1) / UNASKED + 1) * UNASKED;
         }
-        Ok(seen.map_or(Bits(0), |seen| seen.less(Lanes::one())))
+        Ok(over)
     }
 
     /// Ends the unit in a lane of that state, at a node: what was recorded after it is of a part of the step.
@@ -92,5 +107,19 @@ impl PassedOver {
     /// The report of a unit that has ended so.
     pub(super) fn take(&mut self, lane: usize) -> Option<Report> {
         self.reports.get_mut(lane).and_then(Option::take)
+    }
+}
+
+impl Records<'_> {
+    /// The lanes of units that have not ended.
+    pub(super) fn under_way(&self) -> Bits {
+        if self.job.plan.layout == Layout::Packed {
+            return Bits::splat(!self.ended.first().copied().unwrap_or(true));
+        }
+        let goes_on = |lane: &usize| {
+            let stopped = self.watches.get(*lane).and_then(Option::as_ref).is_some_and(|watch| watch.stopped);
+            !self.ended[*lane] && self.failed[*lane].is_none() && !stopped
+        };
+        (0..self.units.len().min(WIDTH)).filter(goes_on).fold(Bits(0), |all, lane| all.or(Bits(1 << lane)))
     }
 }
