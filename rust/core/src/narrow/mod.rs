@@ -33,7 +33,7 @@ pub const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscilla
 /// The most that an argument may move between two places where a method looks: a bump that is e⁻³ there is felt.
 pub const REACH: f64 = 3.0;
 /// The same of equal steps, which are as coarse as they were asked for.
-const REACH_OF_EQUAL: f64 = 6.0;
+const REACH_OF_EQUAL: f64 = 4.0;
 /// The same of waves in equal steps, by what they turn: two looks in a turn tell it from none.
 const REACH_OF_EQUAL_WAVES: f64 = core::f64::consts::PI;
 /// The same of a series, which knows e²⁰ times what it begins with by its last coefficients.
