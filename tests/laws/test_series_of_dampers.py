@@ -5,7 +5,7 @@ Bounds: a step by series is off by less than a tenth of rtol; runs here are of s
 
 import numpy as np
 import pytest
-from test_series_of_springs import FIELDS, net
+from nets import FIELDS, goes_as_by_another_method_with_its_own_bits, net
 
 import visviva as vv
 
@@ -52,7 +52,8 @@ def test_ends_that_pass_each_other_closely_keep_angular_momentum(beside: float) 
     d, v = out.position[:, 1] - out.position[:, 0], out.velocity[:, 1] - out.velocity[:, 0]
     # Twelve is the product of the largest distance and speed.
     assert np.cross(d, v)[:, 2] == pytest.approx(4.0 * beside, rel=0, abs=12e-12)
-    assert np.abs(out.position[-1] - other.position[-1]).max() < 1e-11
+    # The passage, within which a width of 1e-6 turns the line, magnifies the tolerance of either ten times.
+    assert out.position[-1] == pytest.approx(other.position[-1], rel=0, abs=1e-11)
 
 
 @pytest.mark.parametrize("count", [2, 6, 8, 13])
@@ -63,17 +64,7 @@ def test_damped_nets_go_as_by_another_method_and_with_their_own_bits(count: int,
     ends = np.arange(count - 1)
     damper = vv.Damper(ends, ends + 1, c=np.linspace(0.0, 2.0, count - 1) if count > 2 else 0.5)
     scene = vv.Scene(scene.particles, damper, *scene.forces, *FIELDS[fields])
-    ours = scene.run(t=2.0, method="taylor", rtol=1e-12)
-    other = scene.run(t=2.0, method="verner98", rtol=1e-13)
-    # Nets magnify errors of 1e-12 a hundred times within two units of time.
-    assert np.abs(ours.position[-1] - other.position[-1]).max() < 1e-9
-    assert np.abs(ours.velocity[-1] - other.velocity[-1]).max() < 1e-8
-    shifted = scene.particles.position + 0.01 * np.arange(11)[:, None, None]
-    shifted[5] = scene.particles.position
-    for threads in (1, 3):
-        copies = scene.ensemble(position=shifted).run(t=2.0, method="taylor", rtol=1e-12, threads=threads)
-        assert np.array_equal(copies[5].position, ours.position)
-        assert np.array_equal(copies[5].velocity, ours.velocity)
+    goes_as_by_another_method_with_its_own_bits(scene, 2.0, "verner98")
 
 
 def test_copies_with_dampers_of_their_own_have_the_bits_they_have_alone() -> None:
@@ -99,4 +90,5 @@ def test_a_net_of_springs_and_dampers_loses_what_the_dampers_take() -> None:
     d = np.diff(out.position[1:-1], axis=1)
     rate = (d * np.diff(out.velocity[1:-1], axis=1)).sum(axis=2) / np.linalg.norm(d, axis=2)
     lost = np.tile(0.025 * weights, 40) @ (c * rate**2).sum(axis=1)
+    # What forty panels of twenty nodes leave of a rate whose passages they do not follow to the last digit.
     assert out.energy[0] - out.energy[-1] == pytest.approx(lost, rel=1e-9, abs=0)
