@@ -230,3 +230,13 @@ def test_spheres_that_may_touch_end_before_a_wall() -> None:
     # The last node before the wall is no farther from it than a step.
     assert out.final.particles.position[:, 0] == pytest.approx([19.0, PLACE], rel=0.0, abs=DT)
     assert out.final.particles.position[1, 0] < PLACE
+
+
+@pytest.mark.parametrize("off", [-0.6, -0.2, 0.0, 0.1, 0.5])
+@pytest.mark.parametrize("method", ["rk4", "leapfrog"])
+@pytest.mark.parametrize("width", [1e-3, 1e-4])
+def test_a_wall_whose_top_is_at_a_node_is_told(width: float, method: str, off: float) -> None:
+    # There the force is nothing, and of the function a look sees all.
+    top = vv.ExpressionForce(potential=lambda r, v, t: WALLS["gauss"]((r[0] - 5.3) / width - off), bodies=[0])
+    with pytest.raises((vv.ConvergenceError, vv.AccuracyWarning), match=r"narrower than the step|does not resolve"):
+        vv.Scene(BODIES, top).run(10.0, method=method, dt=DT)

@@ -31,6 +31,9 @@ const AT_ONCE: usize = WIDTH - 2;
 /// The least part of the way, and the most, that a step is tried again with.
 const LEAST: f64 = 1.0 / 16.0;
 const MOST: f64 = 0.9;
+/// By what an argument moves within this part of the way to a look, and this part of its mean, it is told whether it turns there.
+const BEFORE_A_LOOK: f64 = 1.0 / 64.0;
+const MOVES: f64 = 0.1;
 /// Of a number that is small beside others this part of them is its size.
 const SMALLEST_SIZE: f64 = 1e-8;
 
@@ -214,6 +217,8 @@ impl Search {
     fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], criteria: Criteria) -> Option<f64> {
         let levels = levels(piece.from.u, piece.to.u);
         let looks = self.functions_at(way, &lanes(&piece.looks));
+        let is_wave = self.of.fades[piece.argument] == Fades::Nowhere;
+        let climbs = criteria.equal && !is_wave && self.goes_on(way, piece);
         let mut last = piece.from;
         for (index, some) in levels.chunks(AT_ONCE).enumerate() {
             // One that is known comes before them, so that how long each lasts is known.
@@ -222,12 +227,23 @@ impl Search {
             if (index + 1) * AT_ONCE >= levels.len() {
                 points.push(piece.to);
             }
-            if let Some(theta) = self.first_that_matters(way, piece, (&looks, &points), (sizes, criteria)) {
+            if let Some(theta) =
+                self.first_that_matters(way, piece, (&looks, &points), (sizes, criteria.tolerance, climbs))
+            {
                 return Some(theta);
             }
             last = points[points.len() - 1];
         }
         None
+    }
+
+    /// Whether an argument moves at both looks about as it does between them: at the top of a wall, and of anything else, it turns.
+    fn goes_on(&mut self, way: &Way, piece: &Piece) -> bool {
+        let ([from, to], part) = (piece.looks, BEFORE_A_LOOK * (piece.looks[1] - piece.looks[0]));
+        way.run(&lanes(&[from, from + part, to - part, to]), &mut self.values);
+        let u = self.values.output(piece.argument).0;
+        let least = smaller((u[1] - u[0]).abs(), (u[3] - u[2]).abs());
+        least >= MOVES * BEFORE_A_LOOK * (u[3] - u[0]).abs()
     }
 
     /// The first of some places at which rates with the functions there are not those with the functions at either look.
@@ -236,7 +252,7 @@ impl Search {
         way: &Way,
         piece: &Piece,
         (looks, points): (&[Lanes], &[Point]),
-        (sizes, Criteria { tolerance, equal, .. }): (&[f64], Criteria),
+        (sizes, tolerance, climbs): (&[f64], f64, bool),
     ) -> Option<f64> {
         let thetas: Vec<f64> = points.iter().map(|point| point.theta).collect();
         let thetas = lanes(&thetas);
@@ -257,7 +273,6 @@ impl Search {
             if moved > 1.0 { time / moved } else { time }
         };
         let gaps: Vec<f64> = points.windows(2).map(apart).collect();
-        let climbs = equal && self.of.fades[piece.argument] != Fades::Nowhere;
         let matters = |k: &usize| {
             let after = gaps.get(*k).copied().unwrap_or(0.0);
             let before = if *k > 0 { gaps[*k - 1] } else { 0.0 };
