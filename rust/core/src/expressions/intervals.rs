@@ -10,6 +10,7 @@ use super::function::Function;
 use super::graph::{Graph, Id, Node, number};
 use crate::numerics::angles;
 use core::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 /// Products of more factors than this are as narrow as powers.
 const LOW_DEGREE: u32 = 32;
@@ -41,12 +42,12 @@ pub struct Bounds {
 /// Nodes that are looked at.
 #[derive(Clone, Debug)]
 pub struct Intervals {
-    graph: Graph,
+    graph: Arc<Graph>,
     roots: Vec<Id>,
     /// All that they are made of, arguments first.
-    nodes: Vec<Id>,
+    nodes: Arc<[Id]>,
     /// The degree of each, were functions as smooth as their arguments.
-    degrees: Vec<u32>,
+    degrees: Arc<[u32]>,
     found: Vec<Interval>,
 }
 
@@ -150,19 +151,19 @@ impl Intervals {
             };
         }
         let found = vec![Interval::ANY; graph.nodes().len()];
-        Self { graph, roots, nodes, degrees, found }
+        Self { graph: Arc::new(graph), roots, nodes: nodes.into(), degrees: degrees.into(), found }
     }
 
-    /// Where they are while the state is in the box.
-    pub fn over(&mut self, t: f64, state: &[Interval], parameters: &[f64]) -> Bounds {
+    /// Where they are while time and state are in a box.
+    pub fn over(&mut self, t: Interval, state: &[Interval], parameters: &[f64]) -> Bounds {
         let mut is_plain = true;
-        for &id in &self.nodes {
+        for &id in &*self.nodes {
             let of = |id: Id| self.found[id as usize];
             let (value, plain) = match *self.graph.node(id) {
                 Node::Constant(bits) => (Interval::at(number(bits)), true),
                 Node::Variable(index) => (state[index as usize], true),
                 Node::Parameter(index) => (Interval::at(parameters[index as usize]), true),
-                Node::Time => (Interval::at(t), true),
+                Node::Time => (t, true),
                 Node::Sum(constant, ref terms) => {
                     let zero = Interval::at(number(constant));
                     (terms.iter().fold(zero, |sum, &(factor, term)| sum.sum(number(factor), of(term))), true)
@@ -260,9 +261,9 @@ mod tests {
             let mut intervals = Intervals::new(graph.clone(), roots.clone());
             let width = 4.0 * width * width;
             let of = |x: f64| Interval::between(x, x + width);
-            let bounds = intervals.over(0.0, &[of(x), of(y)], &[]).values;
+            let bounds = intervals.over(Interval::at(0.0), &[of(x), of(y)], &[]).values;
             let points = [x + part * width, y + (1.0 - part) * width].map(Interval::at);
-            let values = intervals.over(0.0, &points, &[]).values;
+            let values = intervals.over(Interval::at(0.0), &points, &[]).values;
             for (index, (bound, value)) in bounds.iter().zip(values).enumerate() {
                 // What is no number there may be anything.
                 if value != Interval::ANY && value.low.is_finite() {
@@ -285,7 +286,7 @@ mod tests {
         let high = graph.power(x, 1000.0);
         let is_plain = |root: Id, low: f64, high: f64| {
             let mut of = Intervals::new(graph.clone(), vec![root]);
-            of.over(0.0, &[Interval::between(low, high)], &[]).is_plain
+            of.over(Interval::at(0.0), &[Interval::between(low, high)], &[]).is_plain
         };
         // Where the bump is, beside it, and where it is too small to be a number.
         assert!(!is_plain(bump, -1.0, 1.0) && !is_plain(bump, 0.0, 0.01) && is_plain(bump, 0.0, 0.006));

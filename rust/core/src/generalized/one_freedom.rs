@@ -119,7 +119,7 @@ impl OneFreedom {
 
     /// The same between two places.
     fn bounds(&mut self, places: Interval) -> way::Bounds {
-        let found = self.intervals.over(self.t, &[places, Interval::at(0.0)], &self.parameters);
+        let found = self.intervals.over(Interval::at(self.t), &[places, Interval::at(0.0)], &self.parameters);
         way::Bounds { energy: found.values[0], slope: found.values[2], is_plain: found.is_plain }
     }
 

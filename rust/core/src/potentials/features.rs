@@ -65,7 +65,7 @@ impl Hidden {
     /// Whether nothing narrow hides between two distances, and the largest |V| there, or more.
     fn between(&mut self, from: f64, to: f64) -> (bool, f64) {
         let r = Interval::between(from * self.per_length, to * self.per_length);
-        let bounds = self.intervals.over(0.0, &[r], &[]);
+        let bounds = self.intervals.over(Interval::at(0.0), &[r], &[]);
         let size = |value: &Interval| value.low.abs().max(value.high.abs()) * self.energy.abs();
         (bounds.is_plain, bounds.values.iter().map(size).fold(0.0, f64::max))
     }

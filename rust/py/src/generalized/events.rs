@@ -48,8 +48,7 @@ impl Sought {
                 model.source.graph.sum(-value.unwrap_or_default(), &[(1.0, energy)])
             }
         };
-        let code = Arc::new(model.along(expression)?);
-        Ok(Event { function: Function::Expression(code), direction, last, conserved })
+        Ok(Event { function: Function::of(&mut model, expression)?, direction, last, conserved })
     }
 }
 

@@ -6,14 +6,19 @@
 //!
 //! Directions are those of increasing time, also in a run backwards. A zero at the start does not count.
 
+mod cubic;
 mod search;
+mod shape;
 
+use super::Model;
 use super::sticking::along;
 use crate::error::Result;
-use crate::expressions::{Code, Machine};
+use crate::expressions::intervals::Intervals;
+use crate::expressions::{Code, Id, Machine, narrow};
 use core::fmt;
 pub(super) use search::INSIDE;
 use search::{Point, Search, rounding};
+use shape::Shape;
 use std::sync::Arc;
 
 /// A function of time and state that somebody else evaluates.
@@ -22,8 +27,8 @@ pub type Called = dyn Fn(f64, &[f64]) -> Result<f64> + Send + Sync;
 /// What an event is a zero of.
 #[derive(Clone)]
 pub enum Function {
-    /// An expression and its rate, as [`Model::along`](super::Model::along) gives them.
-    Expression(Arc<Code>),
+    /// An expression and its rate, as [`Model::along`] gives them, and the bounds of one in which something may hide.
+    Expression(Arc<Code>, Option<Arc<Intervals>>),
     /// Of which no rate is known.
     Called(Arc<Called>),
 }
@@ -31,9 +36,23 @@ pub enum Function {
 impl fmt::Debug for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Expression(code) => f.debug_tuple("Expression").field(code).finish(),
+            Self::Expression(code, _) => f.debug_tuple("Expression").field(code).finish(),
             Self::Called(_) => f.write_str("Called"),
         }
+    }
+}
+
+impl Function {
+    /// An expression of a model's time and state.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub fn of(model: &mut Model, expression: Id) -> Result<Self> {
+        let code = Arc::new(model.along(expression)?);
+        let graph = &model.source.graph;
+        let hides = narrow::may_hide(graph, &[expression]);
+        let bounds = hides.then(|| Arc::new(Intervals::new(graph.clone(), vec![expression])));
+        Ok(Self::Expression(code, bounds))
     }
 }
 
@@ -78,14 +97,17 @@ pub(super) trait Interval {
 
 /// A function at work.
 enum Working {
-    Expression(Machine<f64>),
+    Expression(Machine<f64>, Option<Shape>),
     Called(Arc<Called>),
 }
 
 impl Working {
     fn of(function: &Function, parameters: &[f64]) -> Self {
         match function {
-            Function::Expression(code) => Self::Expression(Machine::new(code.clone(), parameters)),
+            Function::Expression(code, bounds) => {
+                let shape = bounds.as_ref().map(|bounds| Shape::new(bounds, parameters));
+                Self::Expression(Machine::new(code.clone(), parameters), shape)
+            }
             Function::Called(call) => Self::Called(call.clone()),
         }
     }
@@ -94,10 +116,18 @@ impl Working {
     fn at(&mut self, t: f64, y: &[f64]) -> Result<(f64, Option<f64>)> {
         let machine = match self {
             Self::Called(call) => return Ok((call(t, y)?, None)),
-            Self::Expression(machine) => machine,
+            Self::Expression(machine, _) => machine,
         };
         let (value, rate) = along(machine, t, y);
         Ok((value, Some(rate)))
+    }
+
+    /// Its bounds, of one in which something may hide.
+    fn shape(&mut self) -> Option<&mut Shape> {
+        match self {
+            Self::Expression(_, shape) => shape.as_mut(),
+            Self::Called(_) => None,
+        }
     }
 }
 

@@ -5,8 +5,10 @@
 //! clear of it by more than it errs; else the function is looked at where the cubic turns, and what changes its sign between
 //! two such points, or comes down towards zero from both, is located on the solution itself.
 
+use super::cubic::Cubic;
+use super::shape::Told;
 use super::{Interval, Working};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ode::events::{before_the_first, zero};
 
 /// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.
@@ -15,16 +17,16 @@ pub(in crate::generalized) const INSIDE: f64 = 0.458_6;
 /// Where a part is looked at again that seems to be understood.
 const SECOND: f64 = 0.81;
 
-/// The most by which a function of the fifth degree, odd about the middle, leaves a cubic of which its rate there differs by
-/// one.
-const OF_SLANT: f64 = 0.15;
-
 /// How far a function may leave the cubic, as a part of its range, so that it turns where the cubic does.
 const UNDERSTOOD: f64 = 1e-3;
 
-/// How often a step is cut, and its parts; and the most looks into one step: enough for thousands of oscillations.
+/// How often a step is cut, and its parts; and the most looks into one step: enough for a hundred thousand oscillations.
 const CUTS: u32 = 24;
-const LOOKS: u32 = 50_000;
+const LOOKS: u32 = 4_000_000;
+
+/// What ends a run whose events are more than can be looked for.
+const TOO_MANY: &str = "the function of an event has more zeros in one step than are looked for, a hundred thousand; end the run \
+    before, or take a function that changes its sign less often";
 
 /// Cuts after which it is asked whether a function is no more than its rounding, which no cut makes smooth.
 const CUTS_BEFORE_ROUNDING: u32 = 6;
@@ -47,15 +49,17 @@ const SECTIONS: usize = 40;
 /// A function in a place of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    theta: f64,
-    value: f64,
+    pub(super) theta: f64,
+    pub(super) value: f64,
     /// Its rate along the step, if that is known.
-    rate: Option<f64>,
+    pub(super) rate: Option<f64>,
+    /// Which of the states that are kept is the one there, if it is.
+    state: Option<usize>,
 }
 
 impl Point {
     pub(super) fn at(theta: f64, (value, rate): (f64, Option<f64>), from: f64, to: f64) -> Self {
-        Self { theta, value, rate: rate.map(|rate| rate * (to - from)) }
+        Self { theta, value, rate: rate.map(|rate| rate * (to - from)), state: None }
     }
 }
 
@@ -70,6 +74,8 @@ pub(super) struct Search<'s> {
     /// What is nothing beside the numbers that the function is made of, once it was asked for.
     rounding: Option<f64>,
     zeros: Vec<Zero>,
+    /// States of points, one after the other, for functions in which something may hide.
+    states: Vec<f64>,
 }
 
 /// What is nothing beside the numbers that a function is made of there.
@@ -93,17 +99,25 @@ fn crosses(start: f64, end: f64) -> bool {
 
 impl<'s> Search<'s> {
     pub(super) fn new(function: &'s mut Working, step: &'s mut dyn Interval) -> Self {
-        Self { function, step, looks: 0, rounding: None, zeros: vec![] }
+        Self { function, step, looks: 0, rounding: None, zeros: vec![], states: vec![] }
     }
 
     /// The zeros in the order of the motion, with the state at [`INSIDE`].
-    pub(super) fn zeros(mut self, [start, end]: [Point; 2], inside: &[f64]) -> Result<Vec<Zero>> {
+    pub(super) fn zeros(mut self, [mut start, mut end]: [Point; 2], inside: &[f64]) -> Result<Vec<Zero>> {
         let (from, to) = self.step.span();
-        let inside = Point::at(INSIDE, self.function.at(from + INSIDE * (to - from), inside)?, from, to);
-        if inside.rate.is_some() {
-            self.part(start, inside, end, CUTS)?;
+        let value = self.function.at(from + INSIDE * (to - from), inside)?;
+        let mut inside_point = Point::at(INSIDE, value, from, to);
+        if inside_point.rate.is_some() {
+            if self.function.shape().is_some() {
+                inside_point.state = Some(self.keep(inside));
+                let begun = self.step.at(0.0)?.to_vec();
+                start.state = Some(self.keep(&begun));
+                let ended = self.step.end().to_vec();
+                end.state = Some(self.keep(&ended));
+            }
+            self.part(start, inside_point, end, CUTS)?;
         } else {
-            self.sampled(start, inside, end)?;
+            self.sampled(start, inside_point, end)?;
         }
         self.zeros.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         self.zeros.dedup();
@@ -114,7 +128,40 @@ impl<'s> Search<'s> {
         self.looks += 1;
         let (from, to) = self.step.span();
         let y = self.step.at(theta)?;
-        Ok(Point::at(theta, self.function.at(from + theta * (to - from), y)?, from, to))
+        let mut point = Point::at(theta, self.function.at(from + theta * (to - from), y)?, from, to);
+        if self.function.shape().is_some() {
+            point.state = Some(self.states.len() / y.len().max(1));
+            self.states.extend_from_slice(y);
+        }
+        Ok(point)
+    }
+
+    /// Keeps a state.
+    fn keep(&mut self, y: &[f64]) -> usize {
+        self.states.extend_from_slice(y);
+        self.states.len() / y.len().max(1) - 1
+    }
+
+    /// What the bounds of the function tell of a part of the step, if it has some.
+    fn told(&mut self, points: [Point; 3]) -> Option<Told> {
+        let ((from, to), numbers) = (self.step.span(), self.step.end().len());
+        let [Some(a), Some(b), Some(c)] = points.map(|point| point.state) else { return None };
+        let state = |k: usize| &self.states[k * numbers..][..numbers];
+        let times = [points[0].theta, points[2].theta].map(|theta| from + theta * (to - from));
+        let states = [state(a), state(b), state(c)];
+        Some(self.function.shape()?.told(times, states))
+    }
+
+    /// Cuts a part of the step in two, and looks into both.
+    fn cut(&mut self, [a, inside, b]: [Point; 3], cuts: u32) -> Result<()> {
+        if self.looks >= LOOKS {
+            return Err(Error::Convergence { message: TOO_MANY.to_owned(), time: self.step.span().0 });
+        }
+        for (left, right) in [(a, inside), (inside, b)] {
+            let between = self.look(left.theta + INSIDE * (right.theta - left.theta))?;
+            self.part(left, between, right, cuts - 1)?;
+        }
+        Ok(())
     }
 
     fn value(&mut self, theta: f64) -> Result<f64> {
@@ -124,6 +171,13 @@ impl<'s> Search<'s> {
     /// Looks into a part of the step, of which a point inside is known.
     fn part(&mut self, a: Point, inside: Point, b: Point, cuts: u32) -> Result<()> {
         let cubic = Cubic::through(a, b);
+        match self.told([a, inside, b]) {
+            Some(Told::Clear) => return Ok(()),
+            Some(Told::Narrow) if cuts > 0 && !self.is_rounding(cubic.size(), inside.theta, cuts)? => {
+                return self.cut([a, inside, b], cuts);
+            }
+            _ => {}
+        }
         let mut off = cubic.off(inside);
         // An oscillation may agree with the cubic in one place; far from zero that is no matter.
         let (clearance, range) = (cubic.clearance(), cubic.range());
@@ -137,13 +191,9 @@ impl<'s> Search<'s> {
             if clearance > 2.0 * off {
                 return Ok(());
             }
-            let understood = off <= UNDERSTOOD * range || cuts == 0 || self.looks >= LOOKS;
+            let understood = off <= UNDERSTOOD * range || cuts == 0;
             if !understood && !self.is_rounding(cubic.size(), inside.theta, cuts)? {
-                for (left, right) in [(a, inside), (inside, b)] {
-                    let between = self.look(left.theta + INSIDE * (right.theta - left.theta))?;
-                    self.part(left, between, right, cuts - 1)?;
-                }
-                return Ok(());
+                return self.cut([a, inside, b], cuts);
             }
         }
         let mut points = vec![a, inside, b];
@@ -291,75 +341,4 @@ fn may_turn(left: f64, middle: f64, right: f64) -> bool {
     let (left, middle, right) = (left.abs(), middle.abs(), right.abs());
     let larger = if left > right { left } else { right };
     one_sign && middle <= left && middle <= right && middle < larger - middle
-}
-
-/// The cubic through values and rates at two points, in Bernstein's basis: it lies between its coefficients.
-struct Cubic {
-    from: f64,
-    length: f64,
-    terms: [f64; 4],
-}
-
-impl Cubic {
-    fn through(a: Point, b: Point) -> Self {
-        let length = b.theta - a.theta;
-        let third = |point: Point| point.rate.unwrap_or(f64::NAN) * length / 3.0;
-        let terms = [a.value, a.value + third(a), b.value - third(b), b.value];
-        Self { from: a.theta, length, terms }
-    }
-
-    fn bounds(&self) -> (f64, f64) {
-        let least = self.terms.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least });
-        let most = self.terms.iter().fold(f64::NEG_INFINITY, |most, &x| if x > most { x } else { most });
-        (least, most)
-    }
-
-    /// The largest of its coefficients.
-    fn size(&self) -> f64 {
-        let (least, most) = self.bounds();
-        if -least > most { -least } else { most }
-    }
-
-    /// How far its coefficients are apart.
-    fn range(&self) -> f64 {
-        let (least, most) = self.bounds();
-        most - least
-    }
-
-    /// How far from zero it stays, told from its values where it turns and at its ends; 0 if it has a zero.
-    fn clearance(&self) -> f64 {
-        let [first, .., last] = self.terms;
-        let sign = first.signum();
-        let turns = self.turns().map(|s| self.at(s).0 * sign);
-        turns
-            .chain([first * sign, last * sign])
-            .fold(f64::INFINITY, |least, x| if x < least { x } else { least })
-    }
-
-    /// Value and slope, in the length of the part.
-    fn at(&self, s: f64) -> (f64, f64) {
-        let between = |from: f64, to: f64| from + s * (to - from);
-        let [a, b, c, d] = self.terms;
-        let [ab, bc, cd] = [between(a, b), between(b, c), between(c, d)];
-        let [abc, bcd] = [between(ab, bc), between(bc, cd)];
-        (between(abc, bcd), 3.0 * (bcd - abc))
-    }
-
-    /// How far the function may be from it anywhere, told from a point about the middle.
-    fn off(&self, inside: Point) -> f64 {
-        let (value, slope) = self.at((inside.theta - self.from) / self.length);
-        let slant = inside.rate.unwrap_or(f64::NAN) * self.length - slope;
-        (inside.value - value).abs() + OF_SLANT * slant.abs() + 4.0 * f64::EPSILON * self.size()
-    }
-
-    /// Where it turns, as fractions of the part.
-    fn turns(&self) -> impl Iterator<Item = f64> {
-        let [a, b, c, d] = self.terms;
-        // Its slope is a parabola with these terms in Bernstein's basis: p + 2 (q - p) s + (p - 2q + r) s².
-        let (p, q, r) = (b - a, c - b, d - c);
-        let root = (q * q - p * r).sqrt();
-        let w = if q > p { p - q - root } else { p - q + root };
-        let found = [w / (p - 2.0 * q + r), p / w];
-        found.into_iter().filter(|&s| 0.0 < s && s < 1.0)
-    }
 }

@@ -65,7 +65,7 @@ fn expression(of: impl Fn(&mut Graph, Id) -> Id) -> Function {
         nonholonomic: vec![],
     };
     let mut model = Model::new(source).unwrap();
-    Function::Expression(Arc::new(model.along(made).unwrap()))
+    Function::of(&mut model, made).unwrap()
 }
 
 /// Σ aₖ sin(k ω q + k) and a constant.
