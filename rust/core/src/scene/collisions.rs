@@ -3,6 +3,7 @@
 //! The one idea: a run with collisions is a chain of runs. Each ends where two spheres come to touch, as with a terminal
 //! event (`integrate/events/contacts.rs` finds the place); then they merge, bounce or stop, and the next one begins there.
 
+mod at_rest;
 mod impact;
 mod run;
 mod sweep;
