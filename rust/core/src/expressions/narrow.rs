@@ -24,6 +24,8 @@ pub enum Kind {
     Call(Function),
     /// By a power of its inverse.
     Divided(f64),
+    /// As its absolute value, by its sign.
+    Absolute,
 }
 
 /// Something narrow, and what decides where it is not nothing.
@@ -38,11 +40,16 @@ pub struct Narrow {
 }
 
 /// What may be narrow among these expressions: functions like exp where their arguments change on the way; sin and cos where the
-/// time alone changes them, as drives do, which may be faster than a step, and too weak for its errors; and what falls steeply.
+/// time changes them, as drives and running waves do, which may be faster than a step, and too weak for its errors; what falls
+/// steeply; and absolute values, of which two may make a tent.
 pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
     let (growth, raised) = (growth(graph), raised(graph, roots));
     let may_be_narrow = |node: Id| {
         let (kind, argument) = match *graph.node(node) {
+            Node::Call(Function::Sqrt, under) => match even_power(graph, under) {
+                (base, 2.0) => (Kind::Absolute, base),
+                _ => return None,
+            },
             Node::Call(function, argument) => (Kind::Call(function), argument),
             Node::Quotient(_, below) => (Kind::Divided(raised[node as usize]), below),
             Node::Power(base, exponent) => {
@@ -55,8 +62,11 @@ pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
             Kind::Call(
                 Function::Exp | Function::Tanh | Function::SechSquared | Function::Sinh | Function::Cosh,
             ) => changes > Dependence::Parameters,
-            Kind::Call(Function::Sin | Function::Cos) => changes == Dependence::Time,
+            Kind::Call(Function::Sin | Function::Cos) => {
+                changes >= Dependence::Time && hangs_on_time(graph, argument)
+            }
             Kind::Call(_) => false,
+            Kind::Absolute => changes > Dependence::Parameters,
             Kind::Divided(exponent) => {
                 changes > Dependence::Parameters && exponent * growth[argument as usize] >= STEEP_FALL
             }
@@ -64,6 +74,29 @@ pub fn narrow(graph: &Graph, roots: &[Id]) -> Vec<Narrow> {
         may.then_some(Narrow { kind, node, argument })
     };
     graph.reachable(roots).into_iter().filter_map(may_be_narrow).collect()
+}
+
+/// Whether the time is in an expression.
+fn hangs_on_time(graph: &Graph, id: Id) -> bool {
+    graph.any(&[id], |node| matches!(node, Node::Time))
+}
+
+/// x of x², x⁴ and so on, which may have a factor, and that power; of all else itself, and one.
+pub fn even_power(graph: &Graph, mut id: Id) -> (Id, f64) {
+    let mut power = 1.0;
+    loop {
+        let (base, more) = match graph.node(id) {
+            Node::Sum(constant, terms) if f64::from_bits(*constant) == 0.0 && terms.len() == 1 => {
+                (terms[0].1, 1.0)
+            }
+            Node::Product(a, b) if a == b => (*a, 2.0),
+            Node::Power(a, exponent) if f64::from_bits(*exponent) % 2.0 == 0.0 => {
+                (*a, f64::from_bits(*exponent))
+            }
+            _ => return (id, power),
+        };
+        (id, power) = (base, power * more);
+    }
 }
 
 /// The power of places and times with which every node grows at most, far out.
@@ -142,7 +175,6 @@ fn is_steep(graph: &Graph, roots: &[Id], waves_of_time: bool) -> bool {
 /// of a wave that the time moves in space unless those count.
 fn degrees(graph: &Graph, waves_of_time: bool) -> Vec<f64> {
     let changes = |id: Id| graph.dependence(id) > Dependence::Parameters;
-    let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
     let mut degrees: Vec<f64> = Vec::with_capacity(graph.nodes().len());
     for node in graph.nodes() {
         let of = |id: Id| degrees[id as usize];
@@ -154,7 +186,7 @@ fn degrees(graph: &Graph, waves_of_time: bool) -> Vec<f64> {
             Node::Quotient(a, b) if !changes(*b) => of(*a),
             Node::Call(Function::Sin | Function::Cos, argument)
                 if waves_of_time
-                    || !of_time(*argument)
+                    || !hangs_on_time(graph, *argument)
                     || graph.dependence(*argument) == Dependence::Time =>
             {
                 of(*argument)
@@ -177,17 +209,16 @@ pub fn is_entire(graph: &Graph, roots: &[Id]) -> bool {
 /// Whether a series tells all of what the time enters in them: of sums, products, whole powers, sines and cosines. What is made
 /// of exp may be nothing in all coefficients.
 pub fn is_entire_in_time(graph: &Graph, roots: &[Id]) -> bool {
-    let of_time = |id: Id| graph.any(&[id], |node| matches!(node, Node::Time));
     graph.reachable(roots).into_iter().all(|id| match *graph.node(id) {
         Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) | Node::Time => true,
         Node::Sum(..) | Node::Product(..) | Node::Call(Function::Sin | Function::Cos, _) => true,
-        Node::Quotient(_, below) => !of_time(below),
+        Node::Quotient(_, below) => !hangs_on_time(graph, below),
         Node::Power(base, exponent) => {
             let exponent = f64::from_bits(exponent);
-            (exponent >= 0.0 && exponent.fract() == 0.0) || !of_time(base)
+            (exponent >= 0.0 && exponent.fract() == 0.0) || !hangs_on_time(graph, base)
         }
-        Node::Call(_, argument) => !of_time(argument),
-        Node::Angle(y, x) => !of_time(y) && !of_time(x),
+        Node::Call(_, argument) => !hangs_on_time(graph, argument),
+        Node::Angle(y, x) => !hangs_on_time(graph, y) && !hangs_on_time(graph, x),
     })
 }
 

@@ -6,11 +6,12 @@
 use crate::error::Result;
 use crate::numerics::real::Mask;
 use crate::ode::Method;
+use crate::ode::looks::{EqualLooks, EqualStep};
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
 use crate::ode::stepper::{Stepper, stepper};
-use crate::ode::system::{System, Taken};
+use crate::ode::system::System;
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
@@ -19,8 +20,8 @@ pub(super) struct FixedSteps<S: Controlled> {
     stepper: Box<dyn Stepper<S>>,
     h: f64,
     node: u64,
-    /// Where a step looks.
-    looks: Vec<f64>,
+    /// What asks of each step.
+    looks: EqualLooks<S>,
     next: State<S>,
     /// The parts of the steps tried last up to which nothing lies between their nodes, if something does.
     pub(super) seen: Option<S>,
@@ -35,7 +36,7 @@ impl<S: Controlled> FixedSteps<S> {
     ) -> Result<Self> {
         let mut stepper = stepper(method, h, system, state)?;
         stepper.look_back();
-        Ok(Self { stepper, h, node: 0, looks: method.looks(), next: state.clone(), seen: None })
+        Ok(Self { stepper, h, node: 0, looks: EqualLooks::of(method), next: state.clone(), seen: None })
     }
 }
 
@@ -78,8 +79,10 @@ impl<S: Controlled> Trial<S> for FixedSteps<S> {
         }
         let (times, ends) =
             ((clock.elapsed, S::next_step(clock, running)), [state.all().0, self.next.all().0]);
-        let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(running, times, ends) };
-        self.seen = system.seen_until(&taken)?;
+        let is_last = S::splat(length).less((clock.end - clock.elapsed).abs()).and(running).not().all();
+        let is_outermost = [self.node == 0, is_last];
+        let step = EqualStep { asked: running, times, ends, is_outermost };
+        self.seen = self.looks.ask(step, system, |taken, system| system.seen_until(taken))?;
         // Without an error the next step is the longest, which is this one.
         let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));
         clock.h = S::splat(self.h);

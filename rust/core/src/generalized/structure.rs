@@ -4,8 +4,9 @@ use super::model::{Kind, Model, Source};
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Dependence, number};
 use crate::expressions::intervals::{Interval, Intervals};
+use crate::expressions::narrow::even_power;
 use crate::expressions::program::Output;
-use crate::expressions::{Graph, Id, Node};
+use crate::expressions::{Id, Node};
 
 /// What is known of a mass matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,35 +137,19 @@ impl Structure {
                 Node::Power(under, exponent) => (*under, number(*exponent)),
                 _ => return None,
             };
-            let (base, power) = Self::even_power(graph, under);
+            let (base, power) = even_power(graph, under);
             // Of x², x⁴ and so on there is a root that has no kink, and of none without one.
             let bent = power > 1.0 && power * exponent > 0.0 && (power * exponent) % 2.0 != 0.0;
             let turns = || {
                 // Whatever the parameters and the time are.
                 let (anything, unknown) = (Interval::at(f64::NAN), vec![f64::NAN; source.parameters]);
                 let state = vec![anything; 2 * source.coordinates];
-                let bounds = Intervals::new(graph.clone(), vec![base]).over(f64::NAN, &state, &unknown);
+                let bounds = Intervals::new(graph.clone(), vec![base]).over(anything, &state, &unknown);
                 bounds.values.iter().any(|values| values.low < 0.0)
             };
             (bent && graph.dependence(base) > Dependence::Parameters && turns()).then_some(base)
         };
         graph.reachable(&all).into_iter().filter_map(turning).collect()
-    }
-
-    /// x of x², x⁴ and so on, which may have a factor, and that power; of all else itself, and one.
-    fn even_power(graph: &Graph, mut id: Id) -> (Id, f64) {
-        let mut power = 1.0;
-        loop {
-            let (base, more) = match graph.node(id) {
-                Node::Sum(constant, terms) if number(*constant) == 0.0 && terms.len() == 1 => {
-                    (terms[0].1, 1.0)
-                }
-                Node::Product(a, b) if a == b => (*a, 2.0),
-                Node::Power(a, exponent) if number(*exponent) % 2.0 == 0.0 => (*a, number(*exponent)),
-                _ => return (id, power),
-            };
-            (id, power) = (base, power * more);
-        }
     }
 
     /// Whether no velocity at all is allowed by every nonholonomic constraint, so that none drives: what holds a motion to

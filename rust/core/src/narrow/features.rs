@@ -42,6 +42,9 @@ pub(super) enum Fades {
     Nowhere,
 }
 
+/// What changes by no larger factor in a step than what falls with this power is far from where its sign changes.
+const POWER_OF_SIGNS: f64 = 3.0;
+
 /// The most that the logarithm of what falls as a power may move between two places where a method looks: what of it is felt there
 /// falls less fast than an exponential function, and what it is where it is greatest may be anything beside it.
 pub(super) const REACH_OF_POWERS: f64 = 3.0;
@@ -101,6 +104,21 @@ pub struct Features {
 }
 
 impl Features {
+    /// Whether an absolute value is that of an argument.
+    pub(super) fn has_absolute(&self, argument: usize) -> bool {
+        self.kinds_of(argument).any(|kind| kind == Kind::Absolute)
+    }
+
+    /// Whether anything else hangs on it.
+    pub(super) fn has_others(&self, argument: usize) -> bool {
+        self.kinds_of(argument).any(|kind| kind != Kind::Absolute)
+    }
+
+    fn kinds_of(&self, argument: usize) -> impl Iterator<Item = Kind> {
+        let own = self.kinds.iter().zip(&self.owners).filter(move |(_, owner)| **owner == argument);
+        own.map(|(&kind, _)| kind)
+    }
+
     /// Of equations, if they have any.
     ///
     /// # Errors
@@ -130,7 +148,7 @@ impl Features {
         let power = |index: usize| {
             let powers = of_argument(index).filter_map(|kind| match kind {
                 Kind::Divided(power) => Some(power),
-                Kind::Call(_) => None,
+                Kind::Call(_) | Kind::Absolute => None,
             });
             let (count, most) =
                 powers.fold((0, 0.0), |(n, most): (u32, f64), power| (n + 1, most.max(power)));
@@ -145,8 +163,10 @@ impl Features {
         };
         let fades: Vec<Fades> = (0..arguments.len()).map(fade).collect();
         let smooth = is_smooth(of.graph, &arguments);
+        let is_absolute = |index: usize| of_argument(index).all(|kind| kind == Kind::Absolute);
         let at_ends = |index: usize| match power(index) {
             Some(power) => AtEnds::Power(power),
+            None if is_absolute(index) => AtEnds::Power(POWER_OF_SIGNS),
             None if smooth[index] => AtEnds::Fades(fades[index]),
             None => AtEnds::Fades(Fades::Nowhere),
         };
@@ -181,7 +201,7 @@ impl Features {
         let _ = motion.insert(graph.time(), graph.constant(1.0));
         let moving = graph.tangent(&arguments, &motion);
         let steady = moving.iter().all(|&rate| graph.dependence(rate) <= Dependence::Parameters)
-            && (0..arguments.len()).all(|index| power(index).is_none());
+            && kinds.iter().all(|kind| matches!(kind, Kind::Call(_)));
         let nodes = |ids: &[Id]| ids.iter().copied().map(Output::Node).collect::<Vec<_>>();
         let of_ends = nodes(&[&arguments[..], &moving].concat());
         let nodes_found: Vec<Id> = found.iter().map(|one| one.node).collect();

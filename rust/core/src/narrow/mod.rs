@@ -70,8 +70,6 @@ pub struct Narrow<S> {
     reach: f64,
     weak: Option<Weak>,
     search: Option<Search>,
-    /// The longest part of a step between two places where the method looks.
-    gap: Option<f64>,
     /// How fast arguments move at most, if all of them do so steadily.
     fastest: S,
 }
@@ -95,7 +93,6 @@ impl<S: Width + Controlled> Narrow<S> {
             reach,
             weak: None,
             search: None,
-            gap: None,
             fastest: S::zero(),
         };
         narrow.set_parameters(parameters);
@@ -109,11 +106,6 @@ impl<S: Width + Controlled> Narrow<S> {
         if self.of.steady {
             self.fastest = self.ends.fastest();
         }
-    }
-
-    /// The longest part of a step between two places where the method looks, which is the same for all steps.
-    fn gap(&mut self, step: &Taken<'_, S>) -> f64 {
-        *self.gap.get_or_insert_with(|| longest_gap(step))
     }
 
     /// How far an argument may move between two places where a step looks.
@@ -133,7 +125,7 @@ impl<S: Width + Controlled> Narrow<S> {
         if !self.of.steady {
             return self.followed(step);
         }
-        let gap = self.gap(step);
+        let gap = step.looks.longest_gap();
         let reach = if self.equal { REACH_OF_EQUAL_WAVES } else { self.reach(step) };
         let moves_little = (self.fastest * step.h.abs()).less_equal(S::splat(reach / gap));
         let asked = step.asked.and(moves_little.not());
@@ -142,7 +134,7 @@ impl<S: Width + Controlled> Narrow<S> {
 
     /// [`System::calm`](crate::ode::system::System::calm).
     pub fn calm(&mut self, step: &Taken<'_, S>, times: f64) -> S::Mask {
-        let (h, reach, gap) = (step.h * S::splat(times), SHARE * self.reach(step), self.gap(step));
+        let (h, reach, gap) = (step.h * S::splat(times), SHARE * self.reach(step), step.looks.longest_gap());
         if self.of.steady {
             return (self.fastest * h.abs()).less_equal(S::splat(reach / gap));
         }
@@ -151,7 +143,7 @@ impl<S: Width + Controlled> Narrow<S> {
 
     /// The same, of arguments that may move by much.
     fn followed(&mut self, step: &Taken<'_, S>) -> Result<Option<S>> {
-        let little = (SHARE * self.reach(step), self.gap(step));
+        let little = (SHARE * self.reach(step), step.looks.longest_gap());
         let criteria = Criteria { reach: self.reach(step), equal: self.equal, tolerance: self.tolerance };
         let Some(told) = self.ends.tell(step, self.t0, little, &self.of.at_ends) else { return Ok(None) };
         let (told, mut seen) = (S::select(step.asked, told, S::one()), S::one());
@@ -180,14 +172,4 @@ impl<S: Width + Controlled> Narrow<S> {
         }
         Ok(Some(seen))
     }
-}
-
-/// The longest part of a step between two places where the method looks.
-fn longest_gap<S: Controlled>(step: &Taken<'_, S>) -> f64 {
-    if step.series {
-        return 1.0;
-    }
-    let mut nodes: Vec<f64> = step.nodes.iter().copied().chain([0.0, 1.0]).collect();
-    nodes.sort_by(f64::total_cmp);
-    nodes.windows(2).map(|two| two[1] - two[0]).fold(0.0, f64::max)
 }

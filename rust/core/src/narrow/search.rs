@@ -5,11 +5,17 @@
 //! method looks. What differs from both, for as long as the argument moves by 1, is an impulse that nobody feels; small beside what
 //! it pushes, it may stay so.
 
+mod seen_as;
+mod sides;
+
 use super::features::{AtEnds, Fades};
 use super::way::Way;
 use super::{Features, REACH_OF_EQUAL_WAVES};
 use crate::expressions::Machine;
+use crate::expressions::narrow::Kind;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use seen_as::SeenAs;
+use sides::Sampled;
 use std::sync::Arc;
 
 /// Between two places where a method looks arguments are sampled at least twice, and so densely.
@@ -31,9 +37,6 @@ const AT_ONCE: usize = WIDTH - 2;
 /// The least part of the way, and the most, that a step is tried again with.
 const LEAST: f64 = 1.0 / 16.0;
 const MOST: f64 = 0.9;
-/// By what an argument moves within this part of the way to a look, and this part of its mean, it is told whether it turns there.
-const BEFORE_A_LOOK: f64 = 1.0 / 64.0;
-const MOVES: f64 = 0.1;
 /// Of a number that is small beside others this part of them is its size.
 const SMALLEST_SIZE: f64 = 1e-8;
 
@@ -101,10 +104,11 @@ impl Search {
             self.rates.set_parameters(&wide);
             self.parameters.copy_from_slice(parameters);
         }
-        let mut pieces = self.pieces(&way, criteria);
+        let sampled = self.sampled(&way);
+        let mut pieces = self.pieces(&way, &sampled, criteria);
         pieces.sort_by(|a, b| a.from.theta.total_cmp(&b.from.theta));
         let sizes = sizes(&way, self.of.rates.outputs());
-        let mut first = f64::INFINITY;
+        let mut first = self.unseen_sides(&way, &sampled, &sizes, criteria).unwrap_or(f64::INFINITY);
         for piece in pieces {
             if piece.from.theta >= first {
                 break;
@@ -118,30 +122,37 @@ impl Search {
         if first > 1.0 { 1.0 } else { (MOST * first).clamp(LEAST, MOST) }
     }
 
-    /// All arguments at these places.
-    fn sampled(&mut self, way: &Way, places: &[f64]) -> Vec<Vec<f64>> {
-        let mut sampled = vec![Vec::with_capacity(places.len()); self.of.fades.len()];
-        for eight in places.chunks(WIDTH) {
-            way.run(&lanes(eight), &mut self.values);
-            for (argument, values) in sampled.iter_mut().enumerate() {
-                values.extend_from_slice(&self.values.output(argument).0[..eight.len()]);
-            }
-        }
-        sampled
-    }
-
-    /// The pieces of the way on which arguments move by more than the reach between two places where the method looks. Equal steps
-    /// that go through poles tell more than that something was unseen.
-    fn pieces(&mut self, way: &Way, Criteria { reach, equal, .. }: Criteria) -> Vec<Piece> {
-        let mut places = vec![0.0];
-        for looks in way.nodes.windows(2) {
+    /// All arguments on the way.
+    fn sampled(&mut self, way: &Way) -> Sampled {
+        let mut places: Vec<f64> = way.looks.places().first().copied().into_iter().collect();
+        for looks in way.looks.places().windows(2) {
             let parts = ((looks[1] - looks[0]) / SPACING).ceil().max(2.0);
             let part = |k: usize| looks[0] + (looks[1] - looks[0]) * (k as f64 / parts);
             places.extend((1..parts as usize).map(part).chain([looks[1]]));
         }
-        let sampled = self.sampled(way, &places);
+        let mut values = vec![Vec::with_capacity(places.len()); self.of.fades.len()];
+        for eight in places.chunks(WIDTH) {
+            way.run(&lanes(eight), &mut self.values);
+            for (argument, values) in values.iter_mut().enumerate() {
+                values.extend_from_slice(&self.values.output(argument).0[..eight.len()]);
+            }
+        }
+        Sampled { places, values }
+    }
+
+    /// The pieces of the way on which arguments move by more than the reach between two places where the method looks. Equal steps
+    /// that go through poles tell more than that something was unseen.
+    fn pieces(
+        &mut self,
+        way: &Way,
+        Sampled { places, values }: &Sampled,
+        Criteria { reach, equal, .. }: Criteria,
+    ) -> Vec<Piece> {
         let mut pieces = Vec::new();
-        for (argument, values) in sampled.iter().enumerate() {
+        for (argument, values) in values.iter().enumerate() {
+            if !self.of.has_others(argument) || values.len() < 2 {
+                continue;
+            }
             let mut turnings: Vec<Turning> = Vec::new();
             for j in 1..values.len() - 1 {
                 let (before, after) = (values[j] - values[j - 1], values[j + 1] - values[j]);
@@ -162,7 +173,7 @@ impl Search {
                 turnings.push(self.turning(way, argument, (places[near], places[far]), is_top));
             }
             let sample = |theta: f64| places.iter().zip(values).find(|(place, _)| **place == theta);
-            for looks in way.nodes.windows(2) {
+            for looks in way.looks.places().windows(2) {
                 let ends = looks.iter().filter_map(|&theta| sample(theta));
                 let inside = || turnings.iter().filter(|p| p.at.theta > looks[0] && p.at.theta < looks[1]);
                 let at_ends = self.of.at_ends[argument];
@@ -217,8 +228,7 @@ impl Search {
     fn unseen(&mut self, way: &Way, piece: &Piece, sizes: &[f64], criteria: Criteria) -> Option<f64> {
         let levels = levels(piece.from.u, piece.to.u);
         let looks = self.functions_at(way, &lanes(&piece.looks));
-        let is_wave = self.of.fades[piece.argument] == Fades::Nowhere;
-        let climbs = criteria.equal && !is_wave && self.goes_on(way, piece);
+        let seen_as = self.seen_as(way, piece, criteria.equal);
         let mut last = piece.from;
         for (index, some) in levels.chunks(AT_ONCE).enumerate() {
             // One that is known comes before them, so that how long each lasts is known.
@@ -228,7 +238,7 @@ impl Search {
                 points.push(piece.to);
             }
             if let Some(theta) =
-                self.first_that_matters(way, piece, (&looks, &points), (sizes, criteria.tolerance, climbs))
+                self.first_that_matters(way, piece, (&looks, &points), (sizes, criteria.tolerance, seen_as))
             {
                 return Some(theta);
             }
@@ -237,22 +247,13 @@ impl Search {
         None
     }
 
-    /// Whether an argument moves at both looks about as it does between them: at the top of a wall, and of anything else, it turns.
-    fn goes_on(&mut self, way: &Way, piece: &Piece) -> bool {
-        let ([from, to], part) = (piece.looks, BEFORE_A_LOOK * (piece.looks[1] - piece.looks[0]));
-        way.run(&lanes(&[from, from + part, to - part, to]), &mut self.values);
-        let u = self.values.output(piece.argument).0;
-        let least = smaller((u[1] - u[0]).abs(), (u[3] - u[2]).abs());
-        least >= MOVES * BEFORE_A_LOOK * (u[3] - u[0]).abs()
-    }
-
     /// The first of some places at which rates with the functions there are not those with the functions at either look.
     fn first_that_matters(
         &mut self,
         way: &Way,
         piece: &Piece,
         (looks, points): (&[Lanes], &[Point]),
-        (sizes, tolerance, climbs): (&[f64], f64, bool),
+        (sizes, tolerance, seen_as): (&[f64], f64, SeenAs),
     ) -> Option<f64> {
         let thetas: Vec<f64> = points.iter().map(|point| point.theta).collect();
         let thetas = lanes(&thetas);
@@ -260,8 +261,9 @@ impl Search {
         let actual = self.rates_with(way, &thetas, &functions);
         let frozen: [Vec<Lanes>; 2] = [0, 1].map(|side| {
             let mut there = functions.clone();
-            for ((function, look), owner) in there.iter_mut().zip(looks).zip(&self.of.owners) {
-                if *owner == piece.argument {
+            let features = self.of.owners.iter().zip(&self.of.kinds);
+            for ((function, look), (owner, kind)) in there.iter_mut().zip(looks).zip(features) {
+                if *owner == piece.argument && *kind != Kind::Absolute {
                     *function = Lanes([look.0[side]; WIDTH]);
                 }
             }
@@ -273,18 +275,26 @@ impl Search {
             if moved > 1.0 { time / moved } else { time }
         };
         let gaps: Vec<f64> = points.windows(2).map(apart).collect();
+        let most = sizes.iter().copied().fold(0.0, f64::max);
+        let between_looks = way.h.abs() * (piece.looks[1] - piece.looks[0]);
         let matters = |k: &usize| {
             let after = gaps.get(*k).copied().unwrap_or(0.0);
             let before = if *k > 0 { gaps[*k - 1] } else { 0.0 };
-            let time = way.h.abs() * before.max(after);
+            // Of a wave equal steps may see the same part again and again.
+            let time = if seen_as == SeenAs::Wave { between_looks } else { way.h.abs() * before.max(after) };
             actual.iter().enumerate().any(|(i, rate)| {
                 let apart = |side: usize| (rate.0[*k] - frozen[side][i].0[*k]).abs();
                 let least = smaller(apart(0), apart(1));
-                // Between two looks what rises, or falls, to what either of them sees is a far end of something wide.
-                let is_between = climbs && least <= (frozen[0][i].0[*k] - frozen[1][i].0[*k]).abs();
                 let impulse = least * time;
+                let is_between = least <= (frozen[0][i].0[*k] - frozen[1][i].0[*k]).abs();
+                let is_known = match seen_as {
+                    SeenAs::Nothing | SeenAs::Wave => false,
+                    SeenAs::FarEnd => is_between,
+                    // It may be all there is to move one number, but not all of them.
+                    SeenAs::Flank => is_between && impulse <= tolerance * most,
+                };
                 // What is no number matters.
-                impulse.is_nan() || (impulse > tolerance * sizes[i] && !is_between)
+                impulse.is_nan() || (impulse > tolerance * sizes[i] && !is_known)
             })
         };
         (0..points.len()).find(matters).map(|k| points[k].theta)

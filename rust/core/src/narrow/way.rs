@@ -2,6 +2,7 @@
 
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::ode::looks::Looks;
 use crate::ode::step_control::Controlled;
 use crate::ode::system::{Form, Taken, Visited};
 
@@ -9,8 +10,6 @@ use crate::ode::system::{Form, Taken, Visited};
 const PARTS: usize = 8;
 /// The most places of which states are known: of a series.
 const MOST_PLACES: usize = 16;
-/// Of a series, which looks at its ends alone, or of equal steps.
-const NO_NODES: &[f64] = &[];
 
 /// A way.
 pub(super) struct Way {
@@ -20,8 +19,8 @@ pub(super) struct Way {
     /// The time before the step, and its length.
     pub(super) t: f64,
     pub(super) h: f64,
-    /// Where the method looks, from 0 to 1.
-    pub(super) nodes: Vec<f64>,
+    /// Where the method looks.
+    pub(super) looks: Looks,
 }
 
 impl Way {
@@ -35,12 +34,29 @@ impl Way {
         let others = |j: usize| places.iter().enumerate().filter(move |(i, _)| *i != j);
         let weight = |(j, x): (usize, &f64)| 1.0 / others(j).map(|(_, y)| x - y).product::<f64>();
         let weights = places.iter().enumerate().map(weight).collect();
-        let inner = if step.series { NO_NODES } else { step.nodes };
-        let mut nodes: Vec<f64> = inner.iter().copied().chain([0.0, 1.0]).collect();
-        nodes.sort_by(f64::total_cmp);
-        nodes.dedup();
+        let looks = step.looks.clone();
         let states = visited.into_iter().map(|(_, state)| state).collect();
-        Self { places, weights, states, t: t0 + step.from.lane(lane), h: step.h.lane(lane), nodes }
+        Self { places, weights, states, t: t0 + step.from.lane(lane), h: step.h.lane(lane), looks }
+    }
+
+    /// The straight way through two places of it, which are those from 0 to 1.
+    pub(super) fn straight(&self, [from, to]: [f64; 2]) -> Self {
+        let states = [from, to].map(|theta| {
+            let basis = self.basis(&[theta; WIDTH]);
+            let number = |index: usize| {
+                let terms = basis.iter().zip(&self.states).map(|(row, state)| row[0] * state[index]);
+                terms.sum()
+            };
+            (0..self.states[0].len()).map(number).collect::<Vec<f64>>()
+        });
+        Self {
+            places: vec![0.0, 1.0],
+            weights: vec![-1.0, 1.0],
+            states: states.to_vec(),
+            t: self.t + from * self.h,
+            h: (to - from) * self.h,
+            looks: Looks::AT_ENDS,
+        }
     }
 
     /// The numbers at the ends.
@@ -50,6 +66,18 @@ impl Way {
 
     /// Enters the states at eight places, and runs the code.
     pub(super) fn run(&self, thetas: &[f64; WIDTH], machine: &mut Machine<Lanes>) {
+        self.enter(thetas, machine);
+        machine.run(Lanes(thetas.map(|theta| self.t + theta * self.h)));
+    }
+
+    /// The same, as if nothing had moved since a place.
+    pub(super) fn run_at_rest(&self, since: f64, thetas: &[f64; WIDTH], machine: &mut Machine<Lanes>) {
+        self.enter(&[since; WIDTH], machine);
+        machine.run(Lanes(thetas.map(|theta| self.t + theta * self.h)));
+    }
+
+    /// The polynomials that are 1 in one of the places and 0 in the others, at eight places.
+    fn basis(&self, thetas: &[f64; WIDTH]) -> [[f64; WIDTH]; MOST_PLACES] {
         let mut basis = [[0.0; WIDTH]; MOST_PLACES];
         for (lane, &theta) in thetas.iter().enumerate() {
             let mut before = 1.0;
@@ -63,6 +91,12 @@ impl Way {
                 after *= theta - place;
             }
         }
+        basis
+    }
+
+    /// Enters the states at eight places.
+    fn enter(&self, thetas: &[f64; WIDTH], machine: &mut Machine<Lanes>) {
+        let basis = self.basis(thetas);
         for (index, number) in machine.state().iter_mut().enumerate().take(self.states[0].len()) {
             let mut sum = [0.0; WIDTH];
             for (row, state) in basis.iter().zip(&self.states) {
@@ -72,7 +106,6 @@ impl Way {
             }
             *number = Lanes(sum);
         }
-        machine.run(Lanes(thetas.map(|theta| self.t + theta * self.h)));
     }
 }
 

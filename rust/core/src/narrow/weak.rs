@@ -48,7 +48,7 @@ impl Weak {
         }
         let functions = self.of.kinds.iter().map(|kind| match kind {
             Kind::Call(function) => Some(*function),
-            Kind::Divided(_) => None,
+            Kind::Divided(_) | Kind::Absolute => None,
         });
         // Of a quotient the argument does not tell all.
         let Some(functions) = functions.collect::<Option<Vec<_>>>() else { return false };

@@ -6,6 +6,7 @@
 //! Time is counted from the start of the run, so that a large `t0` costs no digits.
 
 use super::Embedded;
+use super::looks::Looks;
 use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::{HUGE, PairTerm};
@@ -45,7 +46,7 @@ pub struct EmbeddedStep<S: Element> {
     rule: Rule<S>,
     next: State<S>,
     /// Where its stages look.
-    nodes: Vec<f64>,
+    looks: Looks,
     /// The part of the step tried last up to which nothing lies between those, if something does.
     seen: Option<S>,
 }
@@ -81,7 +82,7 @@ impl<S: Controlled> EmbeddedStep<S> {
             weights: Row { fraction: S::zero(), position: Vec::new(), velocity: Vec::new() },
             rule,
             next: state.clone(),
-            nodes: tableau.c.iter().map(|c| c.to_f64()).collect(),
+            looks: method.looks(),
             seen: None,
         }
     }

@@ -15,6 +15,7 @@ pub mod events;
 pub mod extension;
 pub mod fixed;
 pub mod initial_value;
+pub mod looks;
 pub mod methods;
 pub mod multistep;
 pub mod norm;
@@ -38,6 +39,7 @@ pub mod transformed;
 pub mod trial;
 
 use crate::numerics::double_double::DoubleDouble;
+use looks::Looks;
 use system::{Form, Needs};
 
 /// An integration method: what it declares about itself, and its table.
@@ -148,20 +150,36 @@ pub struct Multistep {
     pub fewest_steps: f64,
 }
 
-/// Whether a part of a step is within it.
-fn is_inside(part: &f64) -> bool {
-    *part > 0.0 && *part < 1.0
+impl Embedded {
+    /// Where its stages look: what has no weight, neither in a step nor in an estimate of its error, counts for nothing.
+    pub fn looks(&self) -> Looks {
+        let Tableau { b, c, .. } = &self.tableau;
+        let weighs =
+            |weights: &[DoubleDouble], k: usize| weights.get(k).is_some_and(|weight| weight.high() != 0.0);
+        let counts = |k: usize| {
+            weighs(b, k) || weighs(self.error, k) || self.second_error.is_some_and(|second| weighs(second, k))
+        };
+        let places = || c.iter().map(|c| c.high()).enumerate();
+        let uncounted = places().filter(|&(k, _)| !counts(k)).map(|(_, place)| place);
+        Looks::with_ends(places().map(|(_, place)| place)).but_uncounted(uncounted)
+    }
 }
 
 impl Splitting {
-    /// Where a step kicks, as parts of it, as far as that is within it.
-    pub fn looks(&self) -> Vec<f64> {
+    /// Where a step kicks: at its ends as well, unless it begins with a drift.
+    pub fn looks(&self) -> Looks {
         let drifted = self.drifts.iter().scan(0.0, |place, drift| {
             *place += drift.high();
             Some(*place)
         });
-        let kicks = self.kicks.iter().skip(1).zip(drifted).filter(|(kick, _)| kick.high() != 0.0);
-        kicks.map(|(_, place)| place).filter(is_inside).collect()
+        let (first, others) = self.kicks.split_first().unzip();
+        let kicks = others.into_iter().flatten().zip(drifted).filter(|(kick, _)| kick.high() != 0.0);
+        let places = kicks.map(|(_, place)| place);
+        if first.is_some_and(|kick: &DoubleDouble| kick.high() != 0.0) {
+            Looks::with_ends(places)
+        } else {
+            Looks::at(places)
+        }
     }
 }
 
@@ -224,14 +242,14 @@ impl Method {
         !matches!(self.scheme, Scheme::Taylor(_))
     }
 
-    /// Where an equal step of it looks at forces, as parts of the step, as far as that is within it.
-    pub fn looks(&self) -> Vec<f64> {
+    /// Where an equal step of it looks at forces.
+    pub fn looks(&self) -> Looks {
         match &self.scheme {
             Scheme::Splitting(table) | Scheme::NystromSplitting(table) | Scheme::Boris(table) => {
                 table.looks()
             }
-            Scheme::RungeKutta(table) => table.c.iter().map(|c| c.high()).filter(is_inside).collect(),
-            Scheme::Multistep(_) | Scheme::Embedded(_) | Scheme::Taylor(_) => Vec::new(),
+            Scheme::RungeKutta(table) => Looks::with_ends(table.c.iter().map(|c| c.high())),
+            Scheme::Multistep(_) | Scheme::Embedded(_) | Scheme::Taylor(_) => Looks::AT_ENDS,
         }
     }
 

@@ -4,6 +4,7 @@
 //! run, never per step, so a kernel that fuses much stays whole behind one virtual call.
 
 use super::Method;
+use super::looks::Looks;
 use super::series::Jet;
 use super::state::State;
 use super::stepper::Stepper;
@@ -90,8 +91,8 @@ pub struct Taken<'a, S: Element> {
     pub ends: [&'a [S]; 2],
     /// The derivatives there or near there, as [`System::rate`] or [`System::acceleration`] gives them, if they are known.
     pub rates: Option<[&'a [S]; 2]>,
-    /// Where the method looks within it, as parts of it, in any order.
-    pub nodes: &'a [f64],
+    /// Where the method looks.
+    pub looks: &'a Looks,
     /// Whether what it knows of its beginning tells of all the step, as a series does.
     pub series: bool,
     /// The states that it went through in a lane, if more than its ends are known.
@@ -101,7 +102,7 @@ pub struct Taken<'a, S: Element> {
 impl<'a, S: Element> Taken<'a, S> {
     /// One of which nothing is known but where it began and where it ended.
     pub fn from_end_to_end(asked: S::Mask, (from, h): (S, S), ends: [&'a [S]; 2]) -> Self {
-        Self { asked, from, h, ends, rates: None, nodes: &[], series: false, visited: None }
+        Self { asked, from, h, ends, rates: None, looks: &Looks::AT_ENDS, series: false, visited: None }
     }
 
     /// Asks the first `numbers` of each half of the state, which are a system of the second order of their own.

@@ -1,14 +1,14 @@
 //! Kicks and drifts at equal steps of another time, as trials that are never refused: each lane has a time of its own.
 //!
 //! The one idea: both flows are known. A drift lasts the time d·ds/W, with W fixed by what does not change in it; a kick is as
-//! long as k·ds/Ω, with Ω at the coordinates, which do not. So a table of kicks and drifts needs no change ([`transformation`]).
+//! long as k·ds/Ω, with Ω at the coordinates, which do not. So a table of kicks and drifts needs no change
+//! ([`transformation`](super::transformation)).
 //!
 //! A time inside a step (an output, an event, the end) is met by a shadow step: to about there in the other time, and for what is
 //! then left of the time a step of the same method in time itself, which is tiny.
-//!
-//! [`transformation`]: super::transformation
 
 use super::Splitting;
+use super::looks::Looks;
 use super::norm::Norm;
 use super::passes::transformed::{Carry, Drift, Lasting, Shares};
 use super::passes::updates::{Advance, Finite, Product};
@@ -206,7 +206,7 @@ pub struct Transformed<S> {
     length: S,
     weights: [S; 2],
     /// Where a step looks.
-    looks: Vec<f64>,
+    looks: Looks,
     /// The parts of the step up to which nothing lies unseen in it, if something does.
     seen: Option<S>,
     /// Evaluations of a step, and whether its first is the last of the one before it.
@@ -245,7 +245,7 @@ impl<S: Controlled> Transformed<S> {
             beside,
             length: zero,
             weights: [zero; 2],
-            looks: table.looks(),
+            looks: table.looks().and_ends(),
             seen: None,
             evaluations: kicks - u64::from(shared),
             shared,
@@ -350,7 +350,7 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         let ends = [state.all().0, self.next.0.all().0];
         let whole = Taken::from_end_to_end(outcome.accepted.and(finite), (from, outcome.h), ends);
         // Parts of the step in the other time are about as long in time.
-        self.seen = system.seen_until(&Taken { nodes: &self.looks, ..whole })?;
+        self.seen = system.seen_until(&Taken { looks: &self.looks, ..whole })?;
         finite = finite.and(self.passed_over().not());
         let lost = outcome.accepted.and(finite.not());
         clock.elapsed = S::select(lost, before.elapsed, clock.elapsed);

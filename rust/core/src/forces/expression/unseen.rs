@@ -73,7 +73,7 @@ impl Unseen {
                 h: step.h * time,
                 ends: [before, after],
                 rates: step.rates.is_some().then_some([first, last]),
-                nodes: step.nodes,
+                looks: step.looks,
                 series: step.series,
                 visited: step.visited.is_some().then_some(&visited),
             };

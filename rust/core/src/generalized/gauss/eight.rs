@@ -20,6 +20,7 @@ use crate::generalized::abreast::SideBySide;
 use crate::narrow::UNSEEN;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
+use crate::ode::looks::Looks;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
@@ -32,6 +33,8 @@ use std::sync::Arc;
 /// A collocation method at work on eight trajectories.
 pub struct GaussEight {
     table: &'static Table,
+    /// Where a step looks.
+    looks: Looks,
     beyond: &'static Beyond,
     form: Form,
     /// Whether accelerations look at velocities.
@@ -74,6 +77,7 @@ impl GaussEight {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
+            looks: method.table.looks(),
             beyond: method.beyond(),
             form,
             velocity,

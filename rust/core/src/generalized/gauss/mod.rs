@@ -23,6 +23,7 @@ mod trial;
 mod visited;
 
 use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::ode::looks::Looks;
 pub use eight::GaussEight;
 use ending::Ending;
 pub use pace::Steps;
@@ -105,6 +106,11 @@ pub(super) fn quadrature() -> (&'static [f64; WIDTH], &'static [f64; WIDTH]) {
 }
 
 impl Table {
+    /// Where a step looks: its stages, and what the ends of it show.
+    fn looks(&self) -> Looks {
+        Looks::with_ends(self.c.0.into_iter().take(self.stages))
+    }
+
     /// The polynomial through the stages at these fractions of the step: a row for what each stage contributes.
     fn at(&self, fractions: &Lanes) -> [Lanes; WIDTH] {
         let mut rows = [Lanes([0.0; WIDTH]); WIDTH];

@@ -14,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
+use crate::ode::looks::Looks;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
@@ -37,6 +38,8 @@ fn greatest(stages: usize, of: impl Fn(usize) -> f64) -> f64 {
 /// A collocation method at work on one trajectory.
 pub struct GaussStep {
     table: &'static Table,
+    /// Where a step looks.
+    looks: Looks,
     beyond: &'static Beyond,
     form: Form,
     /// Whether accelerations look at velocities.
@@ -76,6 +79,7 @@ impl GaussStep {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
+            looks: method.table.looks(),
             beyond: method.beyond(),
             form,
             velocity,
@@ -214,15 +218,14 @@ impl GaussStep {
         for (index, rates) in self.stages.rates.iter().enumerate() {
             [self.edges[0][index], self.edges[1][index]] = [rates.0[0], rates.0[last]];
         }
-        let Self { table, form, stages, next, edges, .. } = self;
+        let Self { table, form, looks, stages, next, edges, .. } = self;
         let rates = Some([&edges[0][..], &edges[1][..]]);
         let ends = [state.all().0, next.all().0];
         let visited =
             |_: usize| table.visited(*form, ends.map(|end| end.to_vec()), h, |i, k| stages.rates[i].0[k]);
-        let nodes = &table.c.0[..table.stages];
         let (asked, visited) = (true, Some(&visited as &dyn Fn(usize) -> Visited));
         let seen =
-            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+            system.seen_until(&Taken { asked, from, h, ends, rates, looks, series: false, visited })?;
         Ok(seen.unwrap_or(1.0))
     }
 

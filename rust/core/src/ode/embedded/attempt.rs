@@ -74,7 +74,7 @@ impl<S: Controlled> EmbeddedStep<S> {
         system: &mut dyn System<S>,
     ) -> Result<Settled<S>> {
         let end_stage = self.end_stage();
-        let Self { stages, next, nodes, .. } = &*self;
+        let Self { stages, next, looks, .. } = &*self;
         let len = stages.len();
         self.seen = system.seen_until(&Taken {
             asked: outcome.accepted,
@@ -82,7 +82,7 @@ impl<S: Controlled> EmbeddedStep<S> {
             h,
             ends: [state.all().0, next.all().0],
             rates: Some([&stages.k[..len], &stages.k[end_stage * len..][..len]]),
-            nodes,
+            looks,
             series: false,
             visited: None,
         })?;

@@ -2,6 +2,7 @@
 
 use super::TaylorStep;
 use crate::numerics::angles::cos;
+use crate::ode::looks::Looks;
 use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::step_control::Controlled;
@@ -20,7 +21,16 @@ impl<S: Controlled> TaylorStep<S> {
         visited: &'a dyn Fn(usize) -> Visited,
     ) -> Taken<'a, S> {
         let ends = [state.all().0, self.next.all().0];
-        Taken { asked, from, h: self.h, ends, rates: None, nodes: &[], series: true, visited: Some(visited) }
+        Taken {
+            asked,
+            from,
+            h: self.h,
+            ends,
+            rates: None,
+            looks: &Looks::AT_ENDS,
+            series: true,
+            visited: Some(visited),
+        }
     }
 
     /// The states that the step goes through in a lane.

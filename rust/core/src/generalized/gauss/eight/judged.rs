@@ -68,17 +68,16 @@ impl GaussEight {
         for (index, row) in self.columns.rates.iter().enumerate() {
             [self.edges[0][index], self.edges[1][index]] = [row[0], row[last]];
         }
-        let Self { table, form, columns, next, edges, .. } = self;
+        let Self { table, form, looks, columns, next, edges, .. } = self;
         let rates = Some([&edges[0][..], &edges[1][..]]);
         let ends = [state.all().0, next.all().0];
         let visited = |lane: usize| {
             let of = |end: &[Lanes]| end.iter().map(|y| y.0[lane]).collect::<Vec<f64>>();
             table.visited(*form, ends.map(of), h.0[lane], |i, k| columns.rates[i][k].0[lane])
         };
-        let nodes = &table.c.0[..table.stages];
         let visited = Some(&visited as &dyn Fn(usize) -> Visited);
         let seen =
-            system.seen_until(&Taken { asked, from, h, ends, rates, nodes, series: false, visited })?;
+            system.seen_until(&Taken { asked, from, h, ends, rates, looks, series: false, visited })?;
         Ok(seen.unwrap_or(Lanes::one()))
     }
 }

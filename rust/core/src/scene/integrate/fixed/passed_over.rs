@@ -6,8 +6,9 @@ use super::{Records, place};
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
+use crate::ode::looks::{EqualLooks, EqualStep};
 use crate::ode::state::State;
-use crate::ode::system::{System, Taken};
+use crate::ode::system::System;
 use crate::scene::integrate::Job;
 use crate::scene::integrate::report::{Counts, Ending, Report};
 use crate::scene::layout::Layout;
@@ -23,8 +24,11 @@ const CALM: f64 = 32.0;
 pub(super) struct PassedOver {
     /// Of each unit; nothing, where the forces have nothing narrow.
     reports: Vec<Option<Report>>,
-    /// Where a step looks.
-    looks: Vec<f64>,
+    /// What asks of each step.
+    looks: Option<EqualLooks<Lanes>>,
+    /// The nodes at which the first step begins and the last one ends.
+    first: u64,
+    last: u64,
     /// The nodes up to which nothing is looked for, lane by lane: a copy is asked where it is alone.
     calm_until: [u64; WIDTH],
 }
@@ -33,7 +37,13 @@ impl PassedOver {
     /// Of so many units of a run.
     pub(super) fn new(job: &Job<'_>, units: usize) -> Self {
         if job.plan.passes_over() {
-            Self { reports: vec![None; units], looks: job.plan.method.looks(), calm_until: [0; WIDTH] }
+            Self {
+                reports: vec![None; units],
+                looks: Some(EqualLooks::of(job.plan.method)),
+                first: job.plan.from,
+                last: place(job, job.end()).node,
+                calm_until: [0; WIDTH],
+            }
         } else {
             Self::default()
         }
@@ -41,7 +51,7 @@ impl PassedOver {
 
     /// Whether each step is to be looked into.
     pub(super) fn looks(&self) -> bool {
-        !self.reports.is_empty()
+        self.looks.is_some()
     }
 
     /// The node up to which none of the lanes that run is asked.
@@ -66,19 +76,17 @@ impl PassedOver {
             if self.calm_until[lane] <= node { asked.or(Bits(1 << lane)) } else { asked }
         };
         let asked = running.and((0..WIDTH).fold(Bits(0), due));
-        if !self.looks() || !asked.any() {
-            return Ok(Bits(0));
-        }
+        let Some(looks) = self.looks.as_mut().filter(|_| asked.any()) else { return Ok(Bits(0)) };
         let (times, ends) = ((Lanes::splat(from), Lanes::splat(h)), [before.all().0, after.all().0]);
-        let taken = Taken { nodes: &self.looks, ..Taken::from_end_to_end(asked, times, ends) };
+        let step =
+            EqualStep { asked, times, ends, is_outermost: [node == self.first, node + 1 >= self.last] };
         let points = system.form().evaluated();
-        let seen = if before.q().len() > points {
-            taken.ask_first_of_halves(points, system)?
-        } else {
-            system.seen_until(&taken)?
-        };
+        let has_bodies = before.q().len() > points;
+        let seen = looks.ask(step, system, |taken, system| {
+            if has_bodies { taken.ask_first_of_halves(points, system) } else { system.seen_until(taken) }
+        })?;
         let over = asked.and(seen.map_or(Bits(0), |seen| seen.less(Lanes::one())));
-        let calm = asked.and(over.not()).and(system.calm(&taken, CALM));
+        let calm = asked.and(over.not()).and(looks.are_calm(step, CALM, system));
         for lane in (0..WIDTH).filter(|&lane| calm.lane(lane)) {
             self.calm_until[lane] = ((node + 1) / UNASKED + 1) * UNASKED;
         }
