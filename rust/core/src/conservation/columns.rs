@@ -23,6 +23,8 @@ pub struct Column {
     pub width: usize,
     /// Whether it is computed from velocities, too.
     pub needs_velocity: bool,
+    /// Whether it is the sum of kinetic energy, potential energy and nothing else, and of which of them.
+    pub energies: [bool; 2],
     /// Its numbers, the first `width` of these.
     value: fn(&mut Snapshot<'_, '_>) -> Result<[Scaled; 3]>,
 }
@@ -34,6 +36,7 @@ pub static COLUMNS: &[Column] = &[
         description: "total energy",
         width: 1,
         needs_velocity: true,
+        energies: [true, true],
         value: |state| Ok(one(kinetic_energy(state.bodies).plus(state.pairs()?.0))),
     },
     Column {
@@ -41,6 +44,7 @@ pub static COLUMNS: &[Column] = &[
         description: "total momentum",
         width: 3,
         needs_velocity: true,
+        energies: [false, false],
         value: |state| Ok(momentum(state.bodies)),
     },
     Column {
@@ -48,6 +52,7 @@ pub static COLUMNS: &[Column] = &[
         description: "total angular momentum about the origin",
         width: 3,
         needs_velocity: true,
+        energies: [false, false],
         value: |state| Ok(angular_momentum(state.bodies, state.about)),
     },
     Column {
@@ -55,6 +60,7 @@ pub static COLUMNS: &[Column] = &[
         description: "center of mass; of massless bodies alone, their mean",
         width: 3,
         needs_velocity: false,
+        energies: [false, false],
         value: |state| Ok(center_of_mass(state.bodies)),
     },
     Column {
@@ -62,6 +68,7 @@ pub static COLUMNS: &[Column] = &[
         description: "kinetic energy",
         width: 1,
         needs_velocity: true,
+        energies: [true, false],
         value: |state| Ok(one(kinetic_energy(state.bodies))),
     },
     Column {
@@ -69,6 +76,7 @@ pub static COLUMNS: &[Column] = &[
         description: "potential energy of all forces",
         width: 1,
         needs_velocity: false,
+        energies: [false, true],
         value: |state| Ok(one(state.pairs()?.0)),
     },
     Column {
@@ -76,6 +84,7 @@ pub static COLUMNS: &[Column] = &[
         description: "virial, the sum of r·F",
         width: 1,
         needs_velocity: false,
+        energies: [false, false],
         value: |state| Ok(one(state.pairs()?.1)),
     },
 ];

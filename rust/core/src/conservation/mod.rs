@@ -5,6 +5,7 @@
 //! are the same functions; [`columns`] is the table of what there is.
 
 pub mod columns;
+pub mod side_by_side;
 
 pub use crate::forces::bodies::{Of, PreciseBodies, Vector};
 

@@ -266,6 +266,16 @@ impl<'a> Writer<'a> {
         self.position_rest.1 > 0
     }
 
+    /// Whether positions or velocities are recorded.
+    pub fn writes_states(&self) -> bool {
+        self.position.1 > 0 || self.velocity.1 > 0
+    }
+
+    /// The columns that are derived at the record.
+    pub fn derived(&self) -> impl Iterator<Item = &'static Column> {
+        self.derived.iter().map(|&(column, _)| column)
+    }
+
     /// Whether columns are derived at the record.
     pub fn derives(&self) -> bool {
         !self.derived.is_empty()
@@ -325,16 +335,23 @@ impl Output<'_> {
     pub fn derive(&self, bodies: &PreciseBodies, ticker: &mut Ticker<'_>) -> Result<()> {
         let Writer { derived, scene, threads, .. } = self.writer;
         let mut state = Snapshot::new(scene.forces_of(self.copy), bodies, [0.0; 3], *threads, ticker);
-        for &(column, (array, len)) in derived {
+        for (index, &(column, _)) in derived.iter().enumerate() {
             let values = state.value(column)?;
-            let at = self.row * column.width;
-            assert!(at + column.width <= len, "a row has a place in its column");
-            for (offset, value) in values.into_iter().take(column.width).enumerate() {
-                // SAFETY: in bounds by the test; no other thread derives this row (see the type).
-                unsafe { array.add(at + offset).write(value) };
-            }
+            self.write_derived(index, &values[..column.width]);
         }
         Ok(())
+    }
+
+    /// Writes the numbers of a derived column.
+    #[inline]
+    pub fn write_derived(&self, index: usize, values: &[f64]) {
+        let (column, (array, len)) = self.writer.derived[index];
+        let at = self.row * column.width;
+        assert!(values.len() == column.width && at + column.width <= len, "a row has a place in its column");
+        for (offset, &value) in values.iter().enumerate() {
+            // SAFETY: in bounds by the test; no other thread derives this row (see the type).
+            unsafe { array.add(at + offset).write(value) };
+        }
     }
 
     /// Writes how a rigid body is turned and turns.

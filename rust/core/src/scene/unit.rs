@@ -2,7 +2,7 @@
 //!
 //! [`Unit`] says which they are. [`Prepared`] holds them in the units and about the origin of the
 //! integration: `size` measures them, `lanes` lays them into a state and reads them off, `record` does so at
-//! the output times, `forces` builds what acts on them.
+//! the output times (`waiting` some of it a little later), `forces` builds what acts on them.
 
 mod forces;
 mod lanes;
@@ -10,6 +10,7 @@ mod record;
 mod rows;
 mod size;
 mod turning;
+mod waiting;
 
 pub use forces::{Kernel, dynamics, uncoupled};
 pub use turning::Turned;
@@ -29,6 +30,7 @@ use crate::rigid::motion::bodies::Start;
 use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
+use waiting::Waiting;
 
 /// Bodies that are integrated together: massive ones first.
 #[derive(Clone, Debug)]
@@ -101,6 +103,8 @@ pub struct Prepared {
     reading: Reading,
     /// Where columns are derived.
     scratch: RefCell<PreciseBodies>,
+    /// States whose energies are formed together, where that is quicker.
+    waiting: RefCell<Option<Box<Waiting>>>,
 }
 
 impl Prepared {
@@ -147,6 +151,7 @@ impl Prepared {
             layout,
             units,
             scratch: RefCell::default(),
+            waiting: RefCell::default(),
         };
         if plan.has_own_times() || plan.neighbors {
             match prepared.measure(plan, ticker) {

@@ -58,6 +58,7 @@ fn lockstep(
     let (plan, t0) = (job.plan, job.scene.t0);
     let prepared: Vec<Prepared> =
         units.iter().map(|unit| job.prepare(unit, ticker)).collect::<Result<_>>()?;
+    prepared.iter().for_each(|unit| unit.may_wait(job.writer));
     let views: Vec<&Prepared> = prepared.iter().collect();
     let mut dynamics = unit::dynamics(plan, &views, threads);
     let dt = plan.dt.unwrap_or(plan.direction);
@@ -138,6 +139,9 @@ fn lockstep(
         ticker,
         &mut records,
     );
+    for unit in &records.units {
+        unit.catch_up(job.writer, ticker)?;
+    }
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
         Err(Error::Interrupted) => Ending::Interrupted,
@@ -220,7 +224,9 @@ impl Recorder<Lanes> for Records<'_> {
         let t = job.times[index];
         let elapsed = job.scene.elapsed(t);
         for (lane, unit) in self.units.iter().enumerate() {
-            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
+            if self.failed[lane].is_none()
+                && !unit.record_soon(job.writer, index, state, lane, elapsed, ticker)?
+            {
                 self.failed[lane] = Some(index);
                 // Whether others in its lanes have events is none of its business.
                 if self.watches.get(lane).is_none_or(Option::is_none) {

@@ -21,7 +21,7 @@ pub(super) struct Reading {
     /// What takes a length and a velocity back to the scene's units.
     pub(super) factors: [f64; 2],
     /// Whether they are relative to an origin that has to be added.
-    moved: bool,
+    pub(super) moved: bool,
     /// Place and velocity of that origin at the start, in the first lanes.
     pub(super) origin: [Lanes; 2],
     way: Way,
@@ -119,7 +119,7 @@ impl Prepared {
     }
 
     #[inline(always)]
-    fn record_states(
+    pub(super) fn record_states(
         &self,
         writer: &Writer<'_>,
         output: &Output<'_>,
@@ -175,16 +175,8 @@ impl Prepared {
         elapsed: f64,
         ticker: &mut Ticker<'_>,
     ) -> Result<bool> {
-        let unit = &self.unit;
-        let count = derived_from(unit);
         let mut bodies = self.scratch.borrow_mut();
-        if !bodies.keeps_masses(count) {
-            bodies.clear(count);
-            let masses = writer.masses(unit.copy);
-            for (slot, &body) in unit.bodies[..count].iter().enumerate() {
-                bodies.set_mass(slot, masses[body]);
-            }
-        }
+        self.keep_masses(writer, &mut bodies);
         let Reading { moved, way, whole, .. } = &self.reading;
         let runs = match way {
             Way::Rows { runs, .. } if *whole => &runs[..],
@@ -200,8 +192,9 @@ impl Prepared {
             (Layout::Packed, true, true) => derive_rows::<2, true>(read, runs, &mut bodies),
             (Layout::Packed, false, true) => derive_rows::<3, true>(read, runs, &mut bodies),
             (Layout::Batched, ..) => {
-                self.gather_bodies(state, unit_lane, elapsed, &mut bodies);
-                bodies.settle();
+                let rows = self.rows_in(state.q().len());
+                let (row, lane) = self.locate(0, unit_lane);
+                self.gather_bodies(state.all(), rows, (row, lane), elapsed, &mut bodies);
                 true
             }
         };
@@ -211,18 +204,30 @@ impl Prepared {
         Ok(finite)
     }
 
-    /// Of a unit that has one lane.
-    fn gather_bodies(
+    /// Sees to it that bodies have the masses from which columns are derived.
+    pub(super) fn keep_masses(&self, writer: &Writer<'_>, bodies: &mut PreciseBodies) {
+        let count = derived_from(&self.unit);
+        if !bodies.keeps_masses(count) {
+            bodies.clear(count);
+            let masses = writer.masses(self.unit.copy);
+            for (slot, &body) in self.unit.bodies[..count].iter().enumerate() {
+                bodies.set_mass(slot, masses[body]);
+            }
+        }
+    }
+
+    /// Sets bodies from numbers and what they leave out, of which each has a lane of a row: so many rows for each
+    /// component of the places, then of the velocities.
+    pub(super) fn gather_bodies(
         &self,
-        state: &State<Lanes>,
-        unit_lane: usize,
+        (y, error): (&[Lanes], &[Lanes]),
+        rows: usize,
+        (row, lane): (usize, usize),
         elapsed: f64,
         bodies: &mut PreciseBodies,
     ) {
-        let (rows, components) = (self.rows_in(state.q().len()), self.shape.components);
-        let (y, error) = state.all();
+        let components = self.shape.components;
         let (y, error) = (as_numbers(y), as_numbers(error));
-        let (row, lane) = self.locate(0, unit_lane);
         let moved = if self.reading.moved { self.origin.at(elapsed) } else { Moved::NOWHERE };
         let [length, speed] = self.reading.factors;
         for (of, factor, first, origin) in
@@ -248,6 +253,7 @@ impl Prepared {
                 }
             }
         }
+        bodies.settle();
     }
 }
 
