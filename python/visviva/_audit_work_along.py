@@ -174,7 +174,7 @@ def _of_all_times(force: Force, own: dict[str, Any], times: int, bodies: int) ->
     changed: dict[str, Any] = {}
     for parameter in force._parameters:
         given = own[parameter.name]
-        if parameter.kind == "numbers" and np.ndim(given) == 1:
+        if parameter.kind == "numbers" and len(given) > 1:  # one number is that of all bodies
             if len(given) != bodies:
                 return None
             changed[parameter.name] = np.tile(given, times)

@@ -22,12 +22,14 @@ from visviva.generalized._known_functions import (
     OF_SYMPY,
     UNKNOWN,
 )
-from visviva.generalized._switches import Purpose, instead, switches
+from visviva.generalized._switches import instead, switches
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
+
+    from visviva.generalized._switches import Purpose
 
 __all__ = ["Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "not_compiled", "recorded"]
 

@@ -6,12 +6,13 @@ that a run can end where laws change; a question, as whether a transformation is
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
-__all__ = ["SWITCH", "WIDTH", "Purpose", "instead", "switches", "tells_of_switches"]
+if TYPE_CHECKING:
+    #: Equations of motion; functions of a state that are asked for something, or looked at; a potential of a distance.
+    Purpose: TypeAlias = Literal["motion", "question", "distance"]
 
-#: Equations of motion; functions of a state that are asked for something, or looked at; a potential of the distance.
-Purpose: TypeAlias = Literal["motion", "question", "distance"]
+__all__ = ["SWITCH", "WIDTH", "instead", "switches", "tells_of_switches"]
 
 #: Of a smooth step in the place of a leap: one that is narrower than a step is found by methods that choose theirs.
 WIDTH = "which steps follow; what sticks costs time as 1/width, so take a thousandth of the usual values for it"
