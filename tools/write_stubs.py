@@ -120,13 +120,16 @@ def class_stub(entry: dict[str, Any], base: str) -> str:
         name, kind, default = parameter["name"], parameter["kind"], parameter["default"]
         choices = ", ".join(f'"{word}"' for word in parameter["choices"])
         words = f"Literal[{choices}]" if choices else None
-        fields.append(f"    {name}: {words or FIELD[kind]}\n")
+        # Optional bodies are None for all of them.
+        none = " | None" if default is not None and kind == "indices" else ""
+        fields.append(f"    {name}: {words or FIELD[kind]}{none}\n")
         if default is not None and kind == "choice":
             default = f'"{parameter["choices"][int(default)]}"'
-        elif default is not None and kind == "indices":
-            default = ()
-        given = "" if default is None else f" = {(default,) * 3 if FIELD[kind].startswith('tuple') else default}"
-        arguments.append(f"{name}: {words or ARGUMENT[kind]}{given}")
+        if none:
+            given = " = None"
+        else:
+            given = "" if default is None else f" = {(default,) * 3 if FIELD[kind].startswith('tuple') else default}"
+        arguments.append(f"{name}: {words or ARGUMENT[kind]}{none}{given}")
     return (
         "\n@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)\n"
         f"class {entry['class_name']}({base}):\n"

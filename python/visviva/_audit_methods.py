@@ -32,8 +32,12 @@ def _check(scene: object) -> None:
 
 
 def _end(scene: Scene, t: float, method: MethodName | Method, dt: float) -> NDArray[np.float64]:
-    end: NDArray[np.float64] = scene.run(t=t, method=method, dt=dt).position[-1]
-    return end
+    """Positions, and quaternions of rigid bodies as large as the scene: they are what else a method goes on to."""
+    out = scene.run(t=t, method=method, dt=dt)
+    end = [out.position[-1].ravel()]
+    if scene.rigid_bodies is not None:
+        end.append(_size(scene) * out.orientation[-1].ravel())
+    return np.concatenate(end)
 
 
 def _size(scene: Scene) -> float:
@@ -43,7 +47,7 @@ def _size(scene: Scene) -> float:
 
 @known_keywords
 def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> float:
-    """The order with which a method's positions converge on a scene: by halving the step twice.
+    """The order with which a method's positions and orientations converge on a scene: by halving the step twice.
 
     Units: those of the scene; the order is without dimension.
 
@@ -89,7 +93,7 @@ def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> 
     least = _ROUNDING * _size(scene)
     if second <= least:
         raise ConvergenceError(
-            f"halving the step to {dt / 4:g} changes positions by {second:.1e}, which is rounding; give a longer dt"
+            f"halving the step to {dt / 4:g} changes states by {second:.1e}, which is rounding; give a longer dt"
         )
     return log2(first / second)
 
@@ -120,8 +124,8 @@ def reversal(
     Returns
     -------
     float
-        The largest change of a coordinate, of the scene's size: rounding, for a reversible method at steps that the
-        span is a multiple of; else its error.
+        The largest change of a coordinate, of the scene's size, or the largest angle by which a rigid body is turned
+        after it, in radians: rounding, for a reversible method at steps that the span is a multiple of; else its error.
 
     Raises
     ------
@@ -144,7 +148,13 @@ def reversal(
     _check(scene)
     end = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
     back = end.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
-    return float(np.abs(back.particles.position - scene.particles.position).max(initial=0.0)) / _size(scene)
+    moved = float(np.abs(back.particles.position - scene.particles.position).max(initial=0.0)) / _size(scene)
+    if scene.rigid_bodies is None or back.rigid_bodies is None:
+        return moved
+    q, start = back.rigid_bodies.orientation, scene.rigid_bodies.orientation
+    # A quaternion and its opposite are one orientation; half an angle lies between two that are next to each other.
+    apart = np.minimum(np.linalg.norm(q - start, axis=1), np.linalg.norm(q + start, axis=1))
+    return max(moved, float((4.0 * np.arcsin(0.5 * apart)).max()))
 
 
 @known_keywords
@@ -155,7 +165,7 @@ def symplecticity(scene: Scene, t: float, *, method: MethodName | Method, dt: fl
     ----------
     scene : Scene
         Of few bodies that all have mass, and forces that look at places and times alone: momenta are masses times
-        velocities.
+        velocities. Of rigid bodies, which no torques may turn, it is the map of their centers.
     t : float
         The end of the run.
     method : str or Method

@@ -25,12 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Custom", "formula_of"]
 
-_NO_SWITCH = (
-    "switches, which no formula does; where V goes on without a jump, put the smaller of r and a, "
-    "(r + a - Abs(r - a))/2, or the larger, (r + a + Abs(r - a))/2, in the place of r; "
-    "blend what jumps by (1 + tanh((r - a)/width))/2"
-)
-
 
 @known_keywords
 def Custom(  # noqa: N802
@@ -116,6 +110,7 @@ def Custom(  # noqa: N802
 
 def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, float] | None) -> Potential:
     from visviva._expression_table import distance_table
+    from visviva.generalized._switches import tells_of_switches
     from visviva.potentials import Expressed
 
     if tolerance is not None:
@@ -129,9 +124,9 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     except InvalidInput as error:
         if isinstance(error, MissingPackage) or error.argument.startswith("parameters"):
             raise
-        if (switch := error.message.find(" switches inside a step")) > 0:
-            raise InvalidInput("function", f"{error.message[:switch]} {_NO_SWITCH}") from error
-        cure = "with r_min and r_max any function of arrays is sampled"
+        if tells_of_switches(error.message) and "truth value" not in error.message:
+            raise  # what is sampled may have branches, but no corners and no jumps
+        cure = "with r_min and r_max any smooth function of arrays is sampled"
         if "is called with" in error.message:
             cure = "what else it takes are parameters="
         elif "free symbol" in error.message:

@@ -171,7 +171,7 @@ def checked_parameters(
 def distance_table(function: Any, parameters: Mapping[Any, float] | None) -> tuple[list[float], list[float]]:
     """Give the table of an expression of r, of SymPy or a function that is called once, and its parameters' values."""
     names, values = checked_parameters(parameters, ("r", "t"))
-    nodes = Nodes()
+    nodes = Nodes("distance")
     if hasattr(function, "free_symbols"):
         root = _root_of_symbols(nodes, function, names)
     else:

@@ -64,12 +64,16 @@ def has_mergers(run: Any) -> bool:
     return bool((run._result.get("collisions", {"survivor": np.zeros(0)})["survivor"] >= 0).any())
 
 
-def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
-    """Rows, the scene of the bodies that are there, and which of those of the run they are; None for all of them."""
-    bodies = run.scene.particles
+def eras(run: Trajectory, scene: Scene | None = None) -> Iterator[tuple[slice, Scene, list[int] | None]]:
+    """Rows, the scene of the bodies that are there, and which of those of the run they are; None for all of them.
+
+    Another scene than that of the run is one of the same bodies under other forces.
+    """
+    scene = scene or run.scene
+    bodies = scene.particles
     parts = hosts(bodies) if run._result.get("collisions") else None
     if parts is None and not has_mergers(run):
-        yield slice(0, len(run.t)), run.scene, None
+        yield slice(0, len(run.t)), scene, None
         return
     table = run._result["collisions"]
     mass, host = bodies.mass.copy(), np.arange(len(bodies)) if parts is None else parts
@@ -78,7 +82,7 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
     start = 0
     for line, end in enumerate(ends):
         if end > start:
-            yield slice(start, end), remaining(run.scene, host, mass), np.unique(host).tolist()
+            yield slice(start, end), remaining(scene, host, mass), np.unique(host).tolist()
             start = end
         if line < len(table["t"]) and table["survivor"][line] >= 0:
             first, second = int(table["first"][line]), int(table["second"][line])

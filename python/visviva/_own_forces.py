@@ -16,7 +16,7 @@ from visviva._declared import as_comparable
 from visviva._keywords import did_you_mean
 from visviva._own_loads import load_of_copies, place_of_load, refuse_shared
 from visviva._own_potentials import names_of_potential, potential_of, potentials_of_copies
-from visviva._parameter import VECTORS
+from visviva._parameter import NOT_NONE, VECTORS
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce, Force
 
@@ -217,6 +217,9 @@ def _bodies_by_copy(name: str, given: Any) -> Sequence[Any]:
     bodies = given.tolist() if isinstance(given, np.ndarray) else given
     if not isinstance(bodies, list | tuple | range) or not bodies:
         raise _without_axis(name, given)
+    for copy, own in enumerate(bodies):
+        if np.size(own) == 0:
+            raise InvalidInput("parameters", f"{name} of copy {copy}: {NOT_NONE}")
     return bodies
 
 

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
     from visviva.potentials import Potential
 
-__all__ = ["TYPES", "VECTORS", "Parameter", "checked_potential", "wrapped"]
+__all__ = ["NOT_NONE", "TYPES", "VECTORS", "Parameter", "checked_potential", "wrapped"]
 
+NOT_NONE = "expected those on which it acts, got none of them; leave it out, or give None, for all"
 VECTORS = ("vector", "axial_vector", "direction", "point")
 _ARRAYS = ("numbers", "table", *VECTORS)
 _QUANTITIES = ("number", "numbers", *VECTORS)  # what has a dimension, and says so where it is none
@@ -61,7 +62,7 @@ class Parameter:
         if self.kind == "choice":
             return self.choices[int(self.default)]
         if self.kind == "indices":
-            return ()
+            return None  # which is all bodies
         return (self.default,) * 3 if self.kind in VECTORS else self.default
 
     def check(self, value: Any) -> Any:
@@ -102,7 +103,13 @@ class Parameter:
         kept: NDArray[np.float64] = _frozen(array, value)
         return kept
 
-    def _indices(self, value: Any) -> int | str | tuple[int | str, ...] | NDArray[np.int64]:
+    def _indices(self, value: Any) -> int | str | tuple[int | str, ...] | NDArray[np.int64] | None:
+        if self.default is not None:
+            # All bodies are an empty array in pickles of earlier versions.
+            if value is None or (isinstance(value, np.ndarray) and value.size == 0):
+                return None
+            if np.size(value) == 0:
+                raise InvalidInput(self.name, NOT_NONE)
         if isinstance(value, str):
             return value
         if not isinstance(value, np.ndarray | list | tuple):
@@ -110,10 +117,7 @@ class Parameter:
         if any(isinstance(each, str) for each in value):
             # Names wait for the scene to say which bodies they are.
             return tuple(each if isinstance(each, str) else whole_number(self.name, each, low=0) for each in value)
-        array = np.asarray(value, dtype=np.int64 if len(value) == 0 and self.default is not None else None)
-        if array.size == 0 and self.default is not None:
-            all_of_them: NDArray[np.int64] = _frozen(array, value)
-            return all_of_them
+        array = np.asarray(value)
         if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
             raise InvalidInput(
                 self.name,
@@ -132,7 +136,7 @@ class Parameter:
         if self.kind == "indices":
             if isinstance(value, str | tuple):
                 raise InvalidInput(self.name, f"expected indices of bodies outside a scene, got {value!r}")
-            return np.array(value, dtype=np.int64, ndmin=1)
+            return np.array([] if value is None else value, dtype=np.int64, ndmin=1)
         return value._to_core() if self.kind == "potential" else value
 
     def resolved(self, value: Any, names: tuple[str, ...], count: int) -> Any:
@@ -143,6 +147,8 @@ class Parameter:
 
     def from_core(self, value: Any) -> Any:
         """The value that `to_core` described, from a file."""
+        if self.kind == "indices" and len(value) == 0:
+            return None
         if self.kind in ("numbers", "indices"):
             return value[0] if len(value) == 1 else value
         if self.kind == "potential":

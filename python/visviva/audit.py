@@ -2,30 +2,30 @@
 
 The one idea: a field is a function of places, whatever made it. `field` makes one of a force of a scene; everything
 else that is written here takes any function ``F(r)`` of places of shape (K, 3). What motions and integrators tell of
-themselves is in `_audit_motions` and `_audit_methods`, forces between bodies in `_audit_third_law`.
+themselves is in `_audit_motions` and `_audit_methods`, forces between bodies in `_audit_third_law`, work along a run in
+`_audit_work_along`.
 """
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._audit_third_law import ThirdLaw, third_law
+from visviva._audit_work_along import looks_at_time, of_any_body, work_along
 from visviva._differences import ROUNDING, derivatives
-from visviva._expression_table import looks_at_time, looks_at_velocities
+from visviva._expression_table import looks_at_velocities
 from visviva._html import Record
 from visviva._keywords import known_keywords, unknown_name
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
-from visviva.forces import DrivenForce, ExpressedForce, Force
+from visviva.forces import ExpressedForce, Force
 from visviva.particles import Particles
 from visviva.scene import Scene
 
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
-
-    from visviva.trajectory import Trajectory
 
     _Field = Callable[[NDArray[np.float64]], ArrayLike]
 
@@ -65,14 +63,15 @@ if not TYPE_CHECKING:
 
 @known_keywords
 def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-    """The force on a body at rest, as a function of where it is.
+    """The force on a body at rest, as a function of where it is: on one that it acts on, where it names its bodies.
 
     Units: those of the force's parameters.
 
     Parameters
     ----------
     force : Force
-        One that acts on each body for itself, such as `CentralField` or `UniformField`.
+        One that acts on each body for itself, such as `CentralField` or `UniformField`. On which bodies of a scene
+        an `ExpressionForce` acts is left aside: at every place is what one of them feels there.
     mass : float
         Of the body.
     t0 : float
@@ -86,7 +85,7 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     Raises
     ------
     visviva.InvalidInput
-        For a force between bodies.
+        For a force between bodies, or one with a number for each body, such as charges: those are so many fields.
 
     References
     ----------
@@ -98,28 +97,27 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     >>> vv.audit.field(vv.Harmonic(k=2.0))(np.array([[1.0, 0.0, 0.0]])).tolist()
     [[-2.0, 0.0, 0.0]]
     """
-    _on_each(force)
+    alone = _on_any_body(force)
     mass = positive("mass", mass)
 
     def at(places: NDArray[np.float64]) -> NDArray[np.float64]:
         bodies = Particles(np.full(len(places), mass), places)
-        return mass * Scene(bodies, force, t0=t0).acceleration()
+        return mass * Scene(bodies, alone, t0=t0).acceleration()
 
     return at
 
 
-def _on_each(force: Force) -> None:
-    """Refuse what is no force, or acts between bodies."""
-    if not isinstance(force, Force):
-        raise InvalidInput("force", f"expected a force, got {type(force).__name__}")
-    # One that has to list bodies acts between them, and what it calls them only a scene knows.
-    lists = any(parameter.kind == "indices" and parameter.default is None for parameter in force._parameters)
-    if lists or _core.acts_between(force._to_core()):
-        raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
-
-
-def _looks_at_time(force: Force) -> bool:
-    return isinstance(force, DrivenForce) or (isinstance(force, ExpressedForce) and looks_at_time(force.nodes))
+def _on_any_body(force: Force) -> Force:
+    """The force as any body that it acts on feels it: places are no bodies of a scene, which could be counted."""
+    of_any = of_any_body(force)
+    for parameter in force._parameters:
+        if parameter.kind == "numbers" and np.size(value := getattr(force, parameter.name)) > 1:
+            raise InvalidInput(
+                "force",
+                f"expected one {parameter.name} of {force!r}, that of the body which feels the field, got "
+                f"{np.size(value)}: each of them makes another field",
+            )
+    return of_any
 
 
 def _looks_at_velocities(force: Force) -> bool:
@@ -134,7 +132,7 @@ def _of_places(force: Force | _Field) -> _Field:
     if not isinstance(force, Force):
         return force
     at = field(force)
-    velocities, time = _looks_at_velocities(force), _looks_at_time(force)
+    velocities, time = _looks_at_velocities(force), looks_at_time(force)
     if velocities or time:
         looks, alone = ("velocities", "field(force)") if velocities else ("the time", "field(force, t0=...)")
         what = "a body at rest feels of it" if velocities else "it is at one time"
@@ -204,88 +202,6 @@ def work(
 
 def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     return lambda s: a + s[:, None] * (b - a)
-
-
-@known_keywords
-def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
-    """The work of one force on each body along a recorded run, up to each of its times.
-
-    Units: those of the scene.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        With position and velocity at times as close as the motion needs.
-    force : Force
-        One that acts on each body for itself.
-
-    Returns
-    -------
-    ndarray, shape (T, N)
-        From 0 at the first time. All forces together do the work by which the kinetic energy grows.
-
-    Raises
-    ------
-    visviva.InvalidInput
-        For a force between bodies, or a run that did not record velocities.
-
-    Notes
-    -----
-    Power F·v between two times is that at three places of Gauss and Lobatto, the middle one on Hermite's cubic through
-    both ends: the error falls with the fourth power of the times' distance.
-
-    References
-    ----------
-    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.1.
-
-    Examples
-    --------
-    >>> import numpy as np, visviva as vv
-    >>> pull = vv.UniformField((0, 0, -10.0))
-    >>> ball = vv.Scene(vv.Particles([2.0], [[0, 0, 0]], [[1.0, 0, 5.0]]), pull)
-    >>> vv.audit.work_along(ball.run(t=np.linspace(0, 1, 5)), pull)[-1].tolist()
-    [0.0]
-    """
-    _on_each(force)
-    t, x, v = trajectory.t, trajectory.position, trajectory.velocity
-    mass = trajectory.scene.particles.mass
-    if len(t) < 2:
-        return np.zeros((len(t), len(mass)))
-    before, after = slice(None, -1), slice(1, None)
-    h = np.diff(t)[:, None, None]
-    middle_x = 0.5 * (x[before] + x[after]) + 0.125 * h * (v[before] - v[after])
-    # Between two rows of one time nothing is done, whatever the velocity.
-    middle_v = 1.5 * (x[after] - x[before]) / np.where(h != 0.0, h, 1.0) - 0.25 * (v[before] + v[after])
-    ends = _power(force, mass, t, x, v)
-    middle = _power(force, mass, 0.5 * (t[before] + t[after]), middle_x, middle_v)
-    steps = h[:, :, 0] / 6.0 * (ends[before] + 4.0 * middle + ends[after])
-    return np.concatenate([np.zeros((1, len(mass))), np.cumsum(steps, axis=0)])
-
-
-def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
-    """F·v of every body at every time."""
-    power: NDArray[np.float64] = np.einsum("tnc,tnc->tn", mass[:, None] * _accelerations(force, mass, t, x, v), v)
-    return power
-
-
-def _accelerations(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
-    """Those of every body at every time, (T, N, 3): all times as so many more bodies, if a force is the same at all."""
-    own = force._to_core()
-    if not _looks_at_time(force):
-        several = [p.name for p in force._parameters if p.kind == "numbers" and np.ndim(own[p.name]) == 1]
-        if all(len(own[name]) == len(mass) for name in several):
-            of_all = own | {name: np.tile(own[name], len(t)) for name in several}
-            masses, places, velocities = np.tile(mass, len(t)), x.reshape(-1, 3), v.reshape(-1, 3)
-            # What is refused is refused below, where bodies have the numbers that they have in the run.
-            with suppress(InvalidInput):
-                return _core.acceleration(
-                    mass=masses, forces=[of_all], position=places, velocity=velocities, t0=float(t[0])
-                ).reshape(x.shape)
-    rows = [
-        _core.acceleration(mass=mass, forces=[own], position=places, velocity=velocities, t0=now)
-        for now, places, velocities in zip(t.tolist(), x, v, strict=True)
-    ]
-    return np.array(rows).reshape(x.shape)
 
 
 @known_keywords

@@ -14,6 +14,7 @@ import numpy as np
 
 from visviva import _core, _expression_table
 from visviva._keywords import check_call, known_keywords, takes
+from visviva._parameter import NOT_NONE
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
 from visviva.generalized._nodes import Nodes, not_compiled
@@ -63,8 +64,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     parameters : mapping of symbol or str to float, optional
         The values of what else stands in the expressions. Copies of an ensemble may have their own, by these names.
     bodies : int or str, or array_like of them, shape (M,), optional
-        The bodies on which it acts, by index or name; all if not given. With ``collisions="merge"`` an acceleration
-        acts on those of them that remain.
+        The bodies on which it acts, by index or name; all if not given, or None, as the force's own `bodies` is then.
+        With ``collisions="merge"`` an acceleration acts on those of them that remain.
 
     Returns
     -------
@@ -127,15 +128,15 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     names, values = _expression_table.checked_parameters(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
     if bodies is not None and np.size(bodies) == 0:
-        raise InvalidInput("bodies", "expected those on which it acts, got none of them; leave it out for all")
+        raise InvalidInput("bodies", NOT_NONE)
     argument = named[0]
     components = given[argument]
     roots = (_of_state(components, names),) if argument == "potential" else _components(argument, components, names)
     found = [_node(argument, root, nodes, names) for root in roots]
     table = _expression_table.table(nodes, found, names)
-    expressed = ExpressedForce(argument, table, values, *_AXES, bodies=() if bodies is None else bodies)
+    expressed = ExpressedForce(argument, table, values, *_AXES, bodies=bodies)
     # Which compiles it: whatever is wrong with it is refused here. What bodies are called only a scene knows.
-    _core.acts_between(replace(expressed, bodies=())._to_core())
+    _core.acts_between(replace(expressed, bodies=None)._to_core())
     return expressed
 
 
@@ -252,7 +253,7 @@ def formula_of(force: ExpressedForce) -> str:
     usual: dict[str, Any] = dict(zip(("first", "second", "third"), _AXES, strict=True))
     usual |= {"origin": (0.0, 0.0, 0.0), "length": 1.0, "mass": 1.0, "time": 1.0}
     own = {name: getattr(force, name) for name in usual if getattr(force, name) != usual[name]}
-    if not isinstance(force.bodies, np.ndarray) or len(force.bodies):
+    if force.bodies is not None:
         own["bodies"] = np.asarray(force.bodies).tolist()
     expressions = f"({', '.join(written)})" if len(written) > 1 else written[0]
     further = [f"{name}={value!r}" for name, value in (values | own).items()]

@@ -188,7 +188,7 @@ class ExpressedForce(Force):
     length: float
     mass: float
     time: float
-    bodies: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    bodies: int | str | tuple[int | str, ...] | NDArray[np.int64] | None
     def __init__(
         self,
         gives: Literal["force", "potential", "acceleration"],
@@ -201,7 +201,7 @@ class ExpressedForce(Force):
         length: float = 1.0,
         mass: float = 1.0,
         time: float = 1.0,
-        bodies: ArrayLike = (),
+        bodies: ArrayLike | None = None,
     ) -> None: ...
 
 def force_from_core(description: dict[str, Any]) -> Force: ...

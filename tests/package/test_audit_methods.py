@@ -144,3 +144,31 @@ def test_methods_are_judged_by_bodies() -> None:
     for asked in (vv.audit.symplecticity, vv.audit.reversal, vv.audit.order):
         with pytest.raises(vv.InvalidInput, match=r"^scene: expected bodies"):
             asked(nobody, 1.0, method="leapfrog", dt=0.1)  # type: ignore[operator]
+
+
+class TestRigidBodies:
+    """A body with three moments, which a torque turns, and whose center goes straight on: methods do nothing else."""
+
+    BODY = vv.RigidBody(2.0, [1.0, 2.0, 2.5], velocity=[0.1, 0, 0], angular_velocity=[0.1, 1.0, 0.2])
+    SCENE = vv.Scene(BODY, vv.AppliedTorque([0.3, 0.1, -0.2]))
+
+    @pytest.mark.parametrize(("method", "order"), [("leapfrog", 2), ("yoshida4", 4), ("rk4", 4)])
+    def test_the_order_is_that_of_orientations(self, method: str, order: int) -> None:
+        assert vv.audit.order(self.SCENE, 4.0, method=method, dt=1 / 8) == pytest.approx(order, abs=0.1, rel=0)
+
+    @pytest.mark.parametrize("method", ["leapfrog", "yoshida4"])
+    def test_a_reversible_method_turns_back(self, method: str) -> None:
+        # Some hundred turns of quaternions, each rounded to 1e-16.
+        assert vv.audit.reversal(self.SCENE, 4.0, method=method, dt=1 / 8) < 2e-14
+
+    def test_the_angle_by_which_another_does_not(self) -> None:
+        end = self.SCENE.run(t=4.0, method="rk4", dt=1 / 8).final
+        back = end.reversed().run(t=8.0, method="rk4", dt=1 / 8).final
+        assert back.rigid_bodies is not None
+        start = np.linalg.inv(vv.rigid.matrix(self.BODY.orientation[0]))
+        turned = vv.rigid.matrix(back.rigid_bodies.orientation[0]) @ start
+        # sin θ from the antisymmetric part of a rotation, which keeps the digits of a small angle.
+        sine = np.linalg.norm((turned - turned.T)[[2, 0, 1], [1, 2, 0]]) / 2.0
+        assert sine > 1e-8
+        told = vv.audit.reversal(self.SCENE, 4.0, method="rk4", dt=1 / 8)
+        assert told == pytest.approx(np.arcsin(sine), rel=1e-7, abs=0)

@@ -59,7 +59,11 @@ def test_the_work_is_that_of_a_scene_at_each_time(force: vv.forces.Force) -> Non
     np.testing.assert_allclose(vv.audit.work_along(out, force), expected, rtol=0.0, atol=1e-14 * size + 1e-16)
 
 
-@pytest.mark.parametrize("force", AT_ALL_TIMES, ids=lambda force: type(force).__name__)
+ONE_NUMBER = [vv.QuadraticDrag(0.5), vv.UniformElectricField((1.0, 0.0, 0.0), charge=2.0)]
+ON_SOME = [vv.ExpressionForce(force=lambda r, v, t: (-r[0] * v[1], 0 * r[1], -r[2]), bodies=[1])]
+
+
+@pytest.mark.parametrize("force", [*AT_ALL_TIMES, *ONE_NUMBER, *ON_SOME], ids=lambda force: type(force).__name__)
 def test_times_are_taken_together(force: vv.forces.Force, monkeypatch: pytest.MonkeyPatch) -> None:
     """The ends of the steps, and their middles: two calls for any number of times."""
     out = vv.Scene(BODIES, force).run(t=np.linspace(0.0, 1.0, 101))

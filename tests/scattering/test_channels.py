@@ -370,3 +370,25 @@ def test_a_cross_section_of_channels_is_that_of_all() -> None:
         sigma = sum(w * (area(low, each) - area(high, each)) for each, w in ((0.0, 1.0 - part), (q, part)))
         omega = 2.0 * np.pi * (np.cos(low) - np.cos(high))
         assert abs(value[index] - sigma / omega) < 4.0 * error[index]
+
+
+@pytest.mark.parametrize("products", [(1.5, 4.0), (0.5, 3.0), (2.0, 3.0)])
+def test_products_of_another_mass_keep_the_balance_of_the_laboratory(products: tuple[float, float]) -> None:
+    """T₃ + T₄ = E + Q and m₁v = m₃v₃ + m₄v₄: their relative motion has E + Q − E m₁/(m₃ + m₄), whatever their sum."""
+    energy, q, (m1, _) = BEAM["beam_energy"], 0.75, BEAM["masses"]
+    events = listed(channels=[Channel(q, 1.0, products)], n_events=1000)
+    momenta = [
+        np.sqrt(2.0 * mass * events[name]) * np.stack([np.cos(events[angle]), sign * np.sin(events[angle])])
+        for mass, name, angle, sign in (
+            (products[0], "energy", "lab_angle", 1.0),
+            (products[1], "recoil_energy", "recoil_angle", -1.0),
+        )
+    ]
+    brought = np.sqrt(2.0 * m1 * energy)
+    # Angles as in the other balances: the roundings of their tangents.
+    np.testing.assert_allclose(sum(momenta), [[brought], [0.0]] * np.ones(1000), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(events["energy"] + events["recoil_energy"], energy + q, rtol=1e-14, atol=0)
+    apart = momenta[0] / products[0] - momenta[1] / products[1]
+    reduced = products[0] * products[1] / sum(products)
+    left = energy + q - energy * m1 / sum(products)
+    np.testing.assert_allclose(reduced * (apart**2).sum(axis=0) / 2.0, left, rtol=1e-12, atol=0)

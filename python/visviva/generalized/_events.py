@@ -17,6 +17,7 @@ from visviva.errors import InvalidInput
 from visviva.events import Event, coordinate, expression
 from visviva.generalized._nodes import Nodes
 from visviva.generalized._source import calls
+from visviva.generalized._switches import tells_of_switches
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ def _event_to_core(system: States, index: int, event: Event) -> dict[str, Any]:
 def _nodes(system: States, index: int, given: Any) -> tuple[list[Node], int]:
     """Give an expression as nodes, also where the system itself was given in another way."""
     source = system._source
-    nodes = Nodes()
+    nodes = Nodes("question")
     try:
         if callable(given) and not hasattr(given, "free_symbols"):
             root = calls(nodes, source.names, source.parameters, system._second_name)("events", given)
@@ -125,7 +126,7 @@ def _nodes(system: States, index: int, given: Any) -> tuple[list[Node], int]:
             root = _symbols(system, nodes).node("events", given)
     except InvalidInput as error:
         hint = ""
-        if any(word in error.message for word in ("truth value", "functions, as np.sin", "where it leaps")):
+        if tells_of_switches(error.message) or "functions, as np.sin" in error.message:
             hint = "; vv.events.function takes a function that is called with numbers"
         raise InvalidInput("events", f"events[{index}]: {error.message}{hint}") from None
     return nodes.all, root

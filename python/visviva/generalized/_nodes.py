@@ -14,23 +14,22 @@ from visviva._keywords import known_keywords
 from visviva._text import note_once
 from visviva.errors import InvalidInput
 from visviva.generalized._known_functions import (
-    BENT,
     FUNCTIONS,
     KNOWN,
-    LEAPS,
     MADE_OF,
     NUMPY,
     OF_FLOATS,
     OF_SYMPY,
-    SWITCH,
     UNKNOWN,
-    WIDTH,
 )
+from visviva.generalized._switches import instead, switches
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
+
+    from visviva.generalized._switches import Purpose
 
 __all__ = ["Expression", "Node", "Nodes", "call_with_expressions", "expression_array", "not_compiled", "recorded"]
 
@@ -40,10 +39,11 @@ Node: TypeAlias = tuple[str, list[int], float]
 class Nodes:
     """A growing list of nodes."""
 
-    __slots__ = ("_places", "all", "argument")
+    __slots__ = ("_places", "all", "argument", "purpose")
 
-    def __init__(self) -> None:
+    def __init__(self, purpose: Purpose = "motion") -> None:
         self.all: list[Node] = []
+        self.purpose: Purpose = purpose
         #: What is written down: the argument that errors name.
         self.argument = "L"
         self._places: dict[tuple[str, tuple[int, ...], float], int] = {}
@@ -173,7 +173,7 @@ class Expression:
         return self._with("product", self)._with("sqrt")
 
     def _leaps(self, name: str) -> NoReturn:
-        raise self._refused(f"{name} of coordinates has no derivatives where it leaps: {LEAPS[name]}")
+        raise self._refused(f"{name} has no derivatives where it leaps: {instead(name, self._nodes.purpose)}")
 
     def _refused(self, message: str) -> InvalidInput:
         return InvalidInput(self._nodes.argument, message)
@@ -259,7 +259,7 @@ class Expression:
     def __bool__(self) -> NoReturn:
         raise self._refused(
             "an expression has no truth value: the function must not branch on coordinates, nor use np.where; "
-            f"{SWITCH}, or blend both with a smooth step, as (1 + np.tanh(x / width)) / 2, {WIDTH}"
+            f"max(x, y) is (x + y + abs(x - y)) / 2; {instead('where', self._nodes.purpose)}"
         )
 
     def __eq__(self, other: object) -> NoReturn:
@@ -302,13 +302,14 @@ class Expression:
         return self._with("atan2", other)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        if ufunc.__name__ in LEAPS:
-            self._leaps(ufunc.__name__)
-        if ufunc.__name__ in BENT:
+        name = ufunc.__name__
+        if name in ("maximum", "minimum", "fmax", "fmin"):
             raise self._refused(
-                f"{ufunc.__name__} is bent where its arguments meet, and the function must not branch on coordinates; "
-                f"{BENT[ufunc.__name__]}"
+                f"{name} is bent where its arguments meet, and the function must not branch on coordinates; "
+                f"{instead(name, self._nodes.purpose)}"
             )
+        if switches(name):
+            self._leaps(name)
         ufunc = OF_FLOATS.get(ufunc, ufunc)
         # NumPy asks the first argument for these, which may be a number.
         if ufunc in (np.arctan2, np.hypot):
@@ -358,7 +359,7 @@ def call_with_expressions(
             note_once(error, f"{argument}: raised in {name}, which is called with expressions in the place of numbers")
             raise
         name = str(error).partition("ufunc '")[2].partition("'")[0]
-        cure = f"; {LEAPS[name]}" if name in LEAPS else ""
+        cure = f"; {instead(name, nodes.purpose)}" if switches(name) else ""
         raise InvalidInput(argument, f"{error}{cure}. Functions that the core knows: {KNOWN}") from error
 
 

@@ -44,7 +44,7 @@ class Source:
 
     def nodes(self, argument: str, expressions: Iterable[Any]) -> tuple[list[Any], list[int]]:
         """Give further expressions of the same state as nodes and their places."""
-        nodes = Nodes()
+        nodes = Nodes("question")
         walk = self._walk(nodes)
         roots = [walk(argument, expression) for expression in expressions]
         return nodes.all, roots

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from visviva.errors import InvalidInput
-from visviva.generalized._known_functions import SWITCH, WIDTH
+from visviva.generalized._switches import SWITCH, WIDTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 from visviva._keywords import known_keywords
 from visviva._packages import needed
 from visviva.errors import InvalidInput
-from visviva.generalized._known_functions import FUNCTIONS, SWITCH, WIDTH
+from visviva.generalized._known_functions import FUNCTIONS
+from visviva.generalized._switches import instead
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -31,13 +32,11 @@ __all__ = [
 #: Symbols of coordinates, of velocities or momenta, and of parameters.
 _Groups: TypeAlias = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 
-#: What may stand in the place of what switches, by its name.
-_INSTEAD = {
-    "Max": "write (x + y + Abs(x - y))/2, or ",
-    "Min": "write (x + y - Abs(x - y))/2, or ",
-    "sign": f"write x/Abs(x), which has no value at 0, or tanh(x/width), {WIDTH}, or ",
-    "Heaviside": f"write (1 + tanh(x/width))/2, {WIDTH}, or ",
-    "Piecewise": f"blend both with a smooth step, as (1 + tanh(x/width))/2, {WIDTH}, or ",
+#: What is wrong with what switches, by what an expression is for.
+_SWITCHES = {
+    "motion": "switches inside a step, where no method keeps its order",
+    "question": "has no derivatives where it switches",
+    "distance": "switches, which no formula does",
 }
 
 
@@ -263,9 +262,8 @@ class Symbols:
         if isinstance(tree, (sp.cot, sp.sec, sp.csc, sp.coth, sp.sech, sp.csch)):
             return self._walk(argument, self._inverse(tree))
         if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign, sp.floor, sp.ceiling)):
-            instead = _INSTEAD.get(name, "")
             raise InvalidInput(
-                argument, f"{name} switches inside a step, where no method keeps its order; {instead}{SWITCH}"
+                argument, f"{name} {_SWITCHES[nodes.purpose]}; {instead(name, nodes.purpose, symbols=True)}"
             )
         if isinstance(tree, sp.core.function.AppliedUndef):
             raise InvalidInput(

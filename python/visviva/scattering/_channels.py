@@ -23,8 +23,10 @@ __all__ = ["Channel", "as_channels"]
 class Channel(Record):
     """A reaction that events of a Monte Carlo go through with some probability.
 
-    The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the center-of-mass frame
-    that are left: ½μ'w'² = ½μw² + Q.
+    The bodies leave by the angle ψ to which the potential deflects them, in the frame in which their momenta cancel,
+    with the speeds that the laboratory's balance leaves them: T₃ + T₄ = E + Q, and the momentum m₁v of the beam. So the
+    energy of their relative motion is ½μ'w'² = E + Q − E m₁/(m₃ + m₄). Of products that sum to m₁ + m₂ that is
+    ½μw² + Q; of others it is not, as their center of mass moves at m₁v/(m₃ + m₄), no longer at m₁v/(m₁ + m₂).
 
     Units: energies in those of the beam, masses in those of its masses; probabilities are without dimension.
 
