@@ -118,11 +118,15 @@ def test_what_resolves_it_is_not_blamed(how: dict[str, Any]) -> None:
 
 
 def cliff(shape: str) -> Any:
-    """A ball that falls on a wall of 5000 a thousandth wide: its steps of a sixth of a second went through it."""
+    """A ball that falls on a wall of 5000 a thousandth wide, or by roots 1e-10: steps of a sixth of a second went through it."""
     x = vv.coordinate("x")
-    s = x / sympy.Float(".001")
+    s = x / sympy.Float("1e-10" if shape == "of roots" else ".001")
     clipped = (sympy.Abs(s + 1) - sympy.Abs(s - 1)) / 2
-    rises = sympy.tanh(s) if shape == "smooth" else clipped * (3 - clipped**2) / 2
+    rises = {
+        "smooth": sympy.tanh(s),
+        "of pieces": clipped * (3 - clipped**2) / 2,
+        "of roots": s / sympy.sqrt(1 + s**2),
+    }[shape]
     return vv.Lagrangian(x.diff(vv.time) ** 2 / 2 - 9.81 * x - 5e3 * (1 - rises) / 2, [x], position=[1.0])
 
 
@@ -139,19 +143,30 @@ def test_chosen_steps_do_not_pass_over_a_smooth_cliff(method: Any) -> None:
         assert cliff("smooth").run(5.0, method=method, max_step=1e-3).position[-1, 0] > 0.0
 
 
-@pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])
-def test_what_chosen_steps_pass_over_is_told(method: Any) -> None:
-    """A cliff between two absolute values is nothing on either side, and no function like exp."""
-    with pytest.warns(vv.AccuracyWarning, match=PASSED_OVER) as caught:
-        out = cliff("of pieces").run([0.0, 5.0], method=method)
-    assert abs(out.energy[-1] - out.energy[0]) > 4e3
-    assert caught[0].filename == __file__
-    # Within half a second a ball from a height of 2 does not come down.
-    with pytest.warns(vv.AccuracyWarning, match="in copy 1, " + PASSED_OVER):
-        cliff("of pieces").ensemble(position=[[2.0], [1.0]]).run([0.0, 0.6], method=method)
+@pytest.mark.parametrize("method", ["auto", "dop853", "verner98", "tsitouras54"])
+def test_nor_over_one_between_two_absolute_values(method: Any) -> None:
+    """It is nothing on either side, and no function like exp."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert cliff("of pieces").run(5.0, method=method, max_step=1e-4).position[-1, 0] > 0.0
+        for end in (0.6, 1.0, 2.0, 5.0):
+            out = cliff("of pieces").run([0.0, end], method=method)
+            # Of the wall's 5000, met four times in a unit of time, at corners that a step of 1e-12 of it is told from.
+            np.testing.assert_allclose(out.energy[-1], out.energy[0], rtol=0, atol=1e-7)
+        # Within half a second a ball from a height of 2 does not come down.
+        both = cliff("of pieces").ensemble(position=[[2.0], [1.0]]).run([0.0, 0.6], method=method)
+        assert (both.position[:, -1] > 0.0).all()
+        assert cliff("of pieces").run(5.0, method=method, max_step=1e-3).position[-1, 0] > 0.0
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "verner98"])
+def test_what_chosen_steps_pass_over_is_told(method: Any) -> None:
+    """A cliff of roots, far thinner than its fall is long, is seen by nobody on its way."""
+    with pytest.warns(vv.AccuracyWarning, match=PASSED_OVER) as caught:
+        out = cliff("of roots").run([0.0, 5.0], method=method)
+    assert abs(out.energy[-1] - out.energy[0]) > 4e3
+    assert caught[0].filename == __file__
+    with pytest.warns(vv.AccuracyWarning, match="in copy 1, " + PASSED_OVER):
+        cliff("of roots").ensemble(position=[[2.0], [1.0]]).run([0.0, 0.6], method=method)
 
 
 @pytest.mark.parametrize("how", [{}, EQUAL, {"method": "dop853"}, {"method": "dop853", "rtol": 1e-4}])

@@ -11,6 +11,8 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Rounds of a search for a change of sides, each in a ninth of the last.
 const ROUNDS: usize = 14;
+/// What lasts no longer than this part of the time is no stretch that steps could be made shorter for.
+const HARDLY: f64 = 1e-12;
 /// So many looks that count know a stretch.
 const LOOKS: usize = 3;
 
@@ -62,8 +64,11 @@ impl Search {
         let unknown = (0..stretches.len()).find(|&k| {
             let [from, to] = stretches[k];
             let beside = [k.checked_sub(1).and_then(middle), middle(k + 1)];
-            // Equal steps are as coarse as they were asked for: what begins or ends in one is known to it.
-            let counts = !equal || beside.iter().all(Option::is_some);
+            // Equal steps are as coarse as they were asked for: what begins or ends in one is known to it. Of others a step control
+            // knows what time hardly tells apart.
+            let is_inner = beside.iter().all(Option::is_some);
+            let counts =
+                is_inner || (!equal && (to - from) * way.h.abs() > HARDLY * way.t.abs().max(way.h.abs()));
             counts
                 && way.looks.counted_between(from, to) < LOOKS
                 && self.sides_matter(way, (&Stretch { from, to, beside }, &switches), sizes, tolerance)
@@ -144,16 +149,12 @@ impl Search {
         let time = way.h.abs() * (to - from);
         actual.iter().enumerate().any(|(i, actual)| {
             (0..WIDTH).any(|k| {
-                let apart =
-                    [0, 1].map(|side: usize| places[side].map(|_| actual.0[k] - otherwise[side][i].0[k]));
-                let [before, after] = apart;
+                let apart = |side: usize| places[side].map(|_| (actual.0[k] - otherwise[side][i].0[k]).abs());
                 let least =
-                    before.into_iter().chain(after).fold(f64::INFINITY, |least, by| smaller(by.abs(), least));
-                // A step of a stair is known as well as the stair is.
-                let is_between = before.zip(after).is_some_and(|(a, b)| a * b < 0.0);
+                    [0, 1].into_iter().filter_map(apart).fold(f64::INFINITY, |least, by| smaller(by, least));
                 let impulse = least * time;
                 // What is no number matters.
-                impulse.is_nan() || (impulse > tolerance * sizes[i] && !is_between)
+                impulse.is_nan() || impulse > tolerance * sizes[i]
             })
         })
     }

@@ -128,15 +128,22 @@ impl Watch<'_> {
             let slot = unit.unit.bodies.iter().position(|other| *other == body);
             slot.map_or([[0.0; 3]; 2], |slot| end.states[slot])
         };
+        // What has a zero ahead has those after it ahead, too, whatever its sign is.
+        let mut is_ahead = vec![false; self.events.len()];
         for &((_, rises), event) in later {
             let Some(&(which, _)) = self.events.get(event).filter(|(which, _)| *which != end.which) else {
                 continue;
             };
+            if is_ahead[event] {
+                continue;
+            }
             let sight = self.sight(unit, event, (&self.inside, elapsed), ticker)?;
             let zero = self.rounding_as_told(unit, event, (&sight, &self.inside, elapsed), &told, ticker)?;
             if sight.value.abs() <= zero || (sight.value > 0.0) == rises {
                 self.counts[event] += 1;
                 self.found.push(Found { which, ..end.clone() });
+            } else {
+                is_ahead[event] = true;
             }
         }
         Ok(())
