@@ -89,7 +89,8 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     All numbers are in the units of the scene; ``t`` is its own time.
     A wall, a bump or a pulse may be narrower than a step: methods that choose their steps look for those of ``exp`` and
     what is written with it (``tanh``, ``cosh``), for what falls as the square or more steeply, and for tents and boxes
-    that are made of absolute values, and shorten steps there. Equal steps (`dt`) end the run before such a one, by a `ConvergenceError`: take a shorter `dt`.
+    that are made of absolute values, and shorten steps there. Equal steps (`dt`) end the run before such a one, by a
+    `ConvergenceError`: take a shorter `dt`.
     Far from zero times are numbers that lie apart, 2.4e-7 near 1.7e9, and what changes fast from one to the next is not
     known better (an `AccuracyWarning` says so): count time from the start of the run. Places and velocities are those
     of the scene, too: air about a body that moves is not at rest in them.

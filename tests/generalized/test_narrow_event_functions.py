@@ -1,7 +1,8 @@
 """Events whose functions are narrower than the steps of a run: none of their zeros is missed.
 
-Steps of linear systems, and those of a Taylor series, are as long as a motion allows. A function of the state that is a thin
-feature on its way, a contact or a resonance, has its zeros told by bounds over the states that a part of a step leads through.
+Steps of linear systems, and those of a Taylor series, are as long as a motion allows. A function of the state that is
+a thin feature on its way, a contact or a resonance, has its zeros told by bounds over the states that a part of a step
+leads through.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def oscillator() -> vv.Hamiltonian:
 
 
 def zeros(function: sp.Expr) -> np.ndarray:
-    """The times at which it is zero on x = cos t, by those of one function of x on both branches of t = ± arccos x + 2πk."""
+    """The times at which it is zero on x = cos t: of a function of x, on both branches of t = ± arccos x + 2πk."""
     of = sp.lambdify(X, function, "numpy")
     x = np.unique(np.concatenate([np.linspace(-1.0, 1.0, 20001), 0.3 + np.linspace(-1e-2, 1e-2, 200001)]))
     values = of(x)
@@ -94,6 +95,8 @@ def test_copies_find_what_each_finds_alone() -> None:
     event = FUNCTIONS["thin gauss"]
     out = copies.run(SPAN, events=[event])
     for copy, start in enumerate((1.0, 0.9, 0.31)):
-        alone = vv.Hamiltonian(V**2 / 2 + X**2 / 2, [X], [V], position=[start], momentum=[0.0]).run(SPAN, events=[event])
+        alone = vv.Hamiltonian(V**2 / 2 + X**2 / 2, [X], [V], position=[start], momentum=[0.0]).run(
+            SPAN, events=[event]
+        )
         assert len(alone.events.t) == 26 or start < 0.9
         assert np.array_equal(out.events.t[out.events.member == copy], alone.events.t)

@@ -118,7 +118,7 @@ def test_what_resolves_it_is_not_blamed(how: dict[str, Any]) -> None:
 
 
 def cliff(shape: str) -> Any:
-    """A ball that falls on a wall of 5000 a thousandth wide, or by roots 1e-10: steps of a sixth of a second went through it."""
+    """A ball falls on a wall of 5000 a thousandth wide, or by roots 1e-10: steps of a sixth of a second passed it."""
     x = vv.coordinate("x")
     s = x / sympy.Float("1e-10" if shape == "of roots" else ".001")
     clipped = (sympy.Abs(s + 1) - sympy.Abs(s - 1)) / 2

@@ -1,7 +1,7 @@
 """Tents: walls written with absolute values, which are nothing on either side and have a corner on top.
 
-To both looks about them they look as if they were not there. Whoever chooses steps finds them by the sign that an absolute value's
-argument changes twice; equal steps end before them, by name.
+To both looks about them they look as if they were not there. Whoever chooses steps finds them by the sign that an
+absolute value's argument changes twice; equal steps end before them, by name.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def tent(x: Any, width: Any) -> Any:
 
 
 def back(width: float, end: float) -> float:
-    """Where a body of unit velocity is after it turned on the flank, up which it goes for width/HEIGHT, and down as long."""
+    """Where a body of unit velocity is after it turned on the flank, for 2 width/HEIGHT."""
     foot = PLACE - width
     return foot - (end - foot - 2.0 * width / HEIGHT)
 

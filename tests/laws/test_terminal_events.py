@@ -242,10 +242,12 @@ def test_a_saved_run_to_an_end_time_ends_with_the_event(tmp_path: Path) -> None:
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("method", ["rk4", "leapfrog", "dop853"])
 def test_what_comes_and_goes_after_the_end_in_the_same_step_is_not_told(method: str, backward: bool) -> None:
-    # y = (t - 1.5)² - 0.01 is zero at 1.4 and 1.6, in the step of 4 in which x = t comes to 1: the second of the two passes up
-    # through zero, where y is positive at 1 as well.
+    # y = (t - 1.5)² - 0.01 is zero at 1.4 and 1.6, in the step of 4 in which x = t comes to 1: at the second of the two
+    # it becomes positive, which it is at 1 as well.
     sign = -1.0 if backward else 1.0
-    throw = vv.Scene(vv.Particles([1.0], [[0.0, 2.24, 0.0]], [[sign, -3.0 * sign, 0.0]]), vv.UniformField((0.0, 2.0, 0.0)))
+    throw = vv.Scene(
+        vv.Particles([1.0], [[0.0, 2.24, 0.0]], [[sign, -3.0 * sign, 0.0]]), vv.UniformField((0.0, 2.0, 0.0))
+    )
     end = events.plane([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], body=0, terminal=True)
     turn = events.plane([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], body=0)
     how = {"method": method} if method == "dop853" else {"method": method, "dt": 4.0}
