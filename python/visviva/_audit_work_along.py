@@ -148,7 +148,7 @@ def _power(scene: Scene, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
     power = np.zeros(x.shape[:2])
     if len(t):
         for force in scene.forces:
-            np.einsum("tnc,tnc->tn", mass[:, None] * _accelerations(force, mass, t, x, v), v, out=power)
+            power += np.einsum("tnc,tnc->tn", mass[:, None] * _accelerations(force, mass, t, x, v), v)
     return power
 
 

@@ -100,3 +100,16 @@ def test_copies_find_what_each_finds_alone() -> None:
         )
         assert len(alone.events.t) == 26 or start < 0.9
         assert np.array_equal(out.events.t[out.events.member == copy], alone.events.t)
+
+
+def test_a_state_on_the_edge_of_a_function_is_no_reason_to_end() -> None:
+    x, y, p, q = sp.symbols("x y p q")
+    kinetic = (p**2 + q**2) / 2
+    away = vv.Lagrangian(kinetic, [x, y], velocities=[p, q], position=[-1.0, 0.0], velocity=[-1.0, 0.0])
+    # Along the negative axis an angle is π, or -π, and its cosine is -1, or beyond by rounding.
+    asked = [sp.atan2(y, x) - 1, sp.acos(x / sp.sqrt(x**2 + y**2)) - 2]
+    for system in (away, away.at(velocity=[0.0, 0.0])):
+        for method in ("auto", "dop853", "gauss16"):
+            out = system.run(10.0, events=asked, method=method)
+            assert out.status == vv.Status.OK
+            assert len(out.events.t) == 0

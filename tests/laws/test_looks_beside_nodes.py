@@ -83,6 +83,11 @@ def test_the_last_step_ends_where_nobody_looks_and_so_does_a_part_of_one(method:
             scene.run(end, method=method, dt=DT)
     # Before the wall nothing is told.
     assert scene.run(0.96, method=method, dt=DT).status == vv.Status.OK
+    # A part of a step that begins at a node begins where nobody looked either.
+    behind = vv.ExpressionForce(force=lambda r, v, t: (-2.5e5 * (1 - np.tanh((r[0] - 2e-3) / 1e-5) ** 2), 0 * t, 0 * t))
+    for end in (1.02, 1.03):
+        with pytest.raises(vv.ConvergenceError, match="narrower than the step"):
+            vv.Scene(scene.particles, behind).run(end, method=method, dt=DT)
 
 
 @pytest.mark.parametrize("method", ["leapfrog_dkd", "pefrl4", "leapfrog"])
@@ -113,3 +118,18 @@ def test_a_running_wave_that_goes_by_in_a_step_is_told(method: str) -> None:
     # With 40 steps in a turn it is followed: the body quivers by 1/2000² beside where it goes freely.
     out = vv.Scene(body, wave).run(1.0, method=method, dt=2 * np.pi / 2000.0 / 40.0)
     assert out.position[-1, 0, 0] == pytest.approx(1.0, rel=0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("method", "turns"), [("rk4", 1), ("midpoint", 1), ("boris4", 1), ("mclachlan4", 1), ("kahan_li8", 3)]
+)
+def test_a_drive_of_as_many_turns_as_steps_is_told(method: str, turns: int) -> None:
+    # Every step sees it in the same phases.
+    dt = 0.1
+    drive = vv.ExpressionForce(force=lambda r, v, t: (5.0 * np.cos(2.0 * np.pi * turns / dt * t), 0.0 * t, 0.0 * t))
+    scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]), drive)
+    with pytest.raises((vv.ConvergenceError, vv.AccuracyWarning), match=r"narrower than the step|does not resolve"):
+        scene.run(10.0, method=method, dt=dt)
+    # With 20 steps in a turn it is not, and gives what it gives in a turn, nothing.
+    out = scene.run(1.0, method=method, dt=dt / turns / 20.0)
+    assert out.velocity[-1, 0, 0] == pytest.approx(1.0, rel=0.0, abs=1e-2)

@@ -43,7 +43,7 @@ def test_a_body_turns_back_at_a_tent_however_thin(width: float, method: str) -> 
 
 
 @pytest.mark.parametrize("method", ["rk4", "leapfrog", "leapfrog_dkd", "kahan_li8", "midpoint"])
-@pytest.mark.parametrize("width", [1e-3, 1e-6])
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 1e-6])
 def test_equal_steps_end_before_one(width: float, method: str) -> None:
     scene = vv.Scene(BODY, vv.ExpressionForce(potential=lambda r, v, t: tent(r[0], width)))
     with pytest.raises(vv.ConvergenceError, match="narrower than the step") as error:
@@ -93,3 +93,15 @@ def test_one_corner_is_no_tent_and_costs_no_more_than_its_error(method: str) -> 
     out = scene.run(8.0 * np.sqrt(2.0), method=method, rtol=1e-9)
     # Each corner costs what a step's tolerance leaves of a jump of the force by 2.
     assert out.position[-1, 0, 0] == pytest.approx(1.0, rel=0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "leapfrog_dkd", "rk4"])
+def test_equal_steps_go_over_a_stair_as_over_one_corner(method: str) -> None:
+    # |x| + |x - 0.005|: between its corners, half a step apart, the force is nothing, and on either side it is 2.
+    scene = vv.Scene(
+        vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]]),
+        vv.ExpressionForce(potential=lambda r, v, t: abs(r[0]) + abs(r[0] - 0.005)),
+    )
+    out = scene.run(20.0, method=method, dt=0.01)
+    # Each of twenty passages loses a step's share of the force.
+    assert abs(out.energy[-1] - out.energy[0]) < 20 * 0.02

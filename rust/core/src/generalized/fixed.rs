@@ -81,7 +81,7 @@ impl<S: Controlled> Trial<S> for FixedSteps<S> {
             ((clock.elapsed, S::next_step(clock, running)), [state.all().0, self.next.all().0]);
         let is_last = S::splat(length).less((clock.end - clock.elapsed).abs()).and(running).not().all();
         let is_outermost = [self.node == 0, is_last];
-        let step = EqualStep { asked: running, times, ends, is_outermost };
+        let step = EqualStep { asked: running, times, ends, is_outermost, is_one: false };
         self.seen = self.looks.ask(step, system, |taken, system| system.seen_until(taken))?;
         // Without an error the next step is the longest, which is this one.
         let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));

@@ -120,6 +120,7 @@ impl<S: Width + Controlled> Ends<S> {
             let moves_little = match at_ends[index] {
                 AtEnds::Fades(_) => most - least <= little || fastest * gap <= little,
                 AtEnds::Power(power) => grows_little((least, most), fastest * gap, factor(power)),
+                AtEnds::Side { is_smooth } => stays_aside((least, most), fastest, is_smooth),
             };
             Hull { ends, least, most, moves_little }
         };
@@ -181,6 +182,19 @@ fn grows_little<V: Real>((least, most): (V, V), between: V, part: V) -> V::Mask 
     on_one_side.and((most - least).less_equal(smaller).or(between.less_equal(smaller)))
 }
 
+/// Whether an argument stays on one side of zero: one that is not smooth, if none of its rates leads there.
+#[inline(always)]
+fn stays_aside<V: Real>((least, most): (V, V), fastest: V, is_smooth: bool) -> V::Mask {
+    let on_one_side = V::zero().less(least).or(most.less(V::zero()));
+    // As a velocity across a plane that nothing leaves.
+    let stays = most.less_equal(least);
+    stays.or(if is_smooth {
+        on_one_side
+    } else {
+        on_one_side.and(fastest.less_equal(least.abs().min(most.abs())))
+    })
+}
+
 /// Where a state is that at the end of the last step.
 struct Known<'a, S> {
     of: &'a [S],
@@ -230,6 +244,10 @@ impl<S: Controlled> Pass<S> for Little<'_, S> {
                 AtEnds::Fades(Fades::Below) => most.less(below),
                 AtEnds::Fades(Fades::Beyond) => most.less(under).or(beyond.less(least)),
                 AtEnds::Fades(Fades::Nowhere) => most.less(least),
+                AtEnds::Side { is_smooth } => {
+                    all = all.and(stays_aside((least, most), fastest, *is_smooth));
+                    continue;
+                }
                 AtEnds::Power(power) => {
                     let part = factor(*power);
                     all = all.and(grows_little((least, most), fastest * gap, V::splat(part)));

@@ -19,6 +19,8 @@ pub(super) enum AtEnds {
     Fades(Fades),
     /// That nothing happens as long as it grows or shrinks by no large factor: of what goes with this power of its inverse.
     Power(f64),
+    /// That nothing happens as long as it stays on one side of zero: of absolute values of it. It may be smooth itself.
+    Side { is_smooth: bool },
 }
 
 impl AtEnds {
@@ -26,7 +28,7 @@ impl AtEnds {
     pub(super) fn reach(self, reach: f64) -> f64 {
         match self {
             Self::Power(_) => reach.min(REACH_OF_POWERS),
-            Self::Fades(_) => reach,
+            Self::Fades(_) | Self::Side { .. } => reach,
         }
     }
 }
@@ -41,9 +43,6 @@ pub(super) enum Fades {
     /// Nowhere: sin and cos.
     Nowhere,
 }
-
-/// What changes by no larger factor in a step than what falls with this power is far from where its sign changes.
-const POWER_OF_SIGNS: f64 = 3.0;
 
 /// The most that the logarithm of what falls as a power may move between two places where a method looks: what of it is felt there
 /// falls less fast than an exponential function, and what it is where it is greatest may be anything beside it.
@@ -99,8 +98,10 @@ pub struct Features {
     pub(super) ends: Arc<Code>,
     /// The arguments and the functions, of a state; of what falls as a power, its logarithm.
     pub(super) values: Arc<Code>,
-    /// The right-hand side of a state and the functions' values.
+    /// The right-hand side of a state and the values of all functions but absolute values, which follow from theirs.
     pub(super) rates: Arc<Code>,
+    /// The same, of all functions, where there are absolute values.
+    pub(super) sided: Option<Arc<Code>>,
 }
 
 impl Features {
@@ -166,7 +167,7 @@ impl Features {
         let is_absolute = |index: usize| of_argument(index).all(|kind| kind == Kind::Absolute);
         let at_ends = |index: usize| match power(index) {
             Some(power) => AtEnds::Power(power),
-            None if is_absolute(index) => AtEnds::Power(POWER_OF_SIGNS),
+            None if is_absolute(index) => AtEnds::Side { is_smooth: smooth[index] },
             None if smooth[index] => AtEnds::Fades(fades[index]),
             None => AtEnds::Fades(Fades::Nowhere),
         };
@@ -208,9 +209,16 @@ impl Features {
         let of_values = nodes(&[&followed[..], &nodes_found].concat());
         let ends = compile(graph, (2 * numbers, parameters), &[], &of_ends)?;
         let values = compile(graph, (numbers, parameters), &[], &of_values)?;
-        let rates = with_values(&mut of, &roots, &nodes_found)?;
+        let others: Vec<Id> =
+            found.iter().filter(|one| one.kind != Kind::Absolute).map(|one| one.node).collect();
+        let rates = with_values(&mut of, &roots, &others)?;
+        let sided = if others.len() < nodes_found.len() {
+            Some(Arc::new(with_values(&mut of, &roots, &nodes_found)?))
+        } else {
+            None
+        };
         let [ends, values, rates] = [ends, values, rates].map(Arc::new);
-        Ok(Some(Self { fades, at_ends, plain, steady, kinds, owners, ends, values, rates }))
+        Ok(Some(Self { fades, at_ends, plain, steady, kinds, owners, ends, values, rates, sided }))
     }
 }
 

@@ -34,8 +34,8 @@ pub const UNSEEN: &str = "a step went over a wall, a bump, a pulse or an oscilla
 pub const REACH: f64 = 3.0;
 /// The same of equal steps, which are as coarse as they were asked for.
 const REACH_OF_EQUAL: f64 = 4.0;
-/// The same of waves in equal steps, by what they turn: two looks in a turn tell it from none.
-const REACH_OF_EQUAL_WAVES: f64 = core::f64::consts::PI;
+/// The same of waves in equal steps, by what they turn: more than two looks in a turn tell it from none.
+const REACH_OF_EQUAL_WAVES: f64 = 2.5;
 /// The same of a series, which knows e²⁰ times what it begins with by its last coefficients.
 const REACH_OF_SERIES: f64 = 20.0;
 /// What may be unseen in equal steps, as a part of a number.

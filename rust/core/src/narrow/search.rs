@@ -82,6 +82,8 @@ pub(super) struct Search {
     of: Arc<Features>,
     values: Machine<Lanes>,
     rates: Machine<Lanes>,
+    /// With absolute values of their own.
+    sided: Option<Machine<Lanes>>,
     parameters: Vec<f64>,
 }
 
@@ -92,6 +94,7 @@ impl Search {
             of: of.clone(),
             values: Machine::new(of.values.clone(), &none),
             rates: Machine::new(of.rates.clone(), &none),
+            sided: of.sided.as_ref().map(|code| Machine::new(code.clone(), &none)),
             parameters: vec![0.0; none.len()],
         }
     }
@@ -102,6 +105,9 @@ impl Search {
             let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             self.values.set_parameters(&wide);
             self.rates.set_parameters(&wide);
+            if let Some(sided) = &mut self.sided {
+                sided.set_parameters(&wide);
+            }
             self.parameters.copy_from_slice(parameters);
         }
         let sampled = self.sampled(&way);
@@ -261,9 +267,8 @@ impl Search {
         let actual = self.rates_with(way, &thetas, &functions);
         let frozen: [Vec<Lanes>; 2] = [0, 1].map(|side| {
             let mut there = functions.clone();
-            let features = self.of.owners.iter().zip(&self.of.kinds);
-            for ((function, look), (owner, kind)) in there.iter_mut().zip(looks).zip(features) {
-                if *owner == piece.argument && *kind != Kind::Absolute {
+            for ((function, look), owner) in there.iter_mut().zip(looks).zip(&self.of.owners) {
+                if *owner == piece.argument {
                     *function = Lanes([look.0[side]; WIDTH]);
                 }
             }
@@ -340,12 +345,23 @@ impl Search {
         (0..self.of.owners.len()).map(|index| self.values.output(first + index)).collect()
     }
 
-    /// The right-hand side at eight places, with these values of the functions.
+    /// The right-hand side at eight places, with these values of the functions; absolute values follow from them.
     fn rates_with(&mut self, way: &Way, thetas: &[f64; WIDTH], functions: &[Lanes]) -> Vec<Lanes> {
+        let others = functions.iter().zip(&self.of.kinds).filter(|(_, kind)| **kind != Kind::Absolute);
         let numbers = self.of.values.variables();
-        self.rates.state()[numbers..].copy_from_slice(functions);
+        for (number, (function, _)) in self.rates.state()[numbers..].iter_mut().zip(others) {
+            *number = *function;
+        }
         way.run(thetas, &mut self.rates);
         (0..self.of.rates.outputs()).map(|index| self.rates.output(index)).collect()
+    }
+
+    /// The same, with absolute values as they are given.
+    fn rates_with_sides(&mut self, way: &Way, thetas: &[f64; WIDTH], functions: &[Lanes]) -> Vec<Lanes> {
+        let Some(sided) = &mut self.sided else { return self.rates_with(way, thetas, functions) };
+        sided.state()[self.of.values.variables()..].copy_from_slice(functions);
+        way.run(thetas, sided);
+        (0..self.of.rates.outputs()).map(|index| sided.output(index)).collect()
     }
 }
 

@@ -5,14 +5,16 @@
 //! first one of the next.
 
 use super::Method;
+use super::step_control::Controlled;
 use super::system::{Form, System, Taken};
 use crate::error::Result;
 use crate::numerics::element::Element;
 use crate::numerics::real::Mask;
 use std::borrow::Cow;
 
-/// Of what velocities were at the beginning of a step this part makes a throw of their change.
-const THROWN: f64 = 0.5;
+/// A step has thrown what it changes the velocities of by so many times as much as they have been: in six steps a period of an
+/// oscillator none does.
+const THROWN: f64 = 1.0;
 
 /// Places of a step at which a method looks, as parts of it, ascending.
 #[derive(Clone, Debug)]
@@ -82,6 +84,8 @@ pub struct EqualLooks<S> {
     looks: Looks,
     /// Of a method that looks at no node.
     between_steps: Option<BetweenSteps>,
+    /// The fastest that anything has been, lane by lane.
+    fastest: S,
     /// Room for the ends of straight ways.
     ends: [Vec<S>; 2],
 }
@@ -106,6 +110,8 @@ pub struct EqualStep<'a, S: Element> {
     pub ends: [&'a [S]; 2],
     /// Whether it is the first of a run, and the last.
     pub is_outermost: [bool; 2],
+    /// Whether lanes are parts of one system.
+    pub is_one: bool,
 }
 
 impl<S: Element> EqualStep<'_, S> {
@@ -128,16 +134,15 @@ impl<S: Element> EqualStep<'_, S> {
         Taken::from_end_to_end(self.asked, (from + past[0], past[1] - past[0]), [&ends[0], &ends[1]])
     }
 
-    /// The lanes in which it has changed velocities by more than a part of what they were, so that nothing but its beginning tells
-    /// where it would have led had it felt nothing.
-    fn is_thrown(&self) -> S::Mask {
+    /// How fast anything is at its beginning, and by how much the velocity of anything changes, at most.
+    fn speeds(&self) -> [S; 2] {
         let n = self.ends[0].len() / 2;
-        let (mut least, mut most) = (S::zero(), S::zero());
+        let (mut speed, mut change) = (S::zero(), S::zero());
         for (&before, &after) in self.ends[0][n..].iter().zip(&self.ends[1][n..]) {
-            least = least.max((after - before).abs());
-            most = most.max(before.abs());
+            speed = speed.max(before.abs());
+            change = change.max((after - before).abs());
         }
-        self.asked.and((most * S::splat(THROWN)).less(least))
+        [speed, change]
     }
 }
 
@@ -150,12 +155,12 @@ impl BetweenSteps {
     }
 }
 
-impl<S: Element> EqualLooks<S> {
+impl<S: Controlled> EqualLooks<S> {
     /// Of a method.
     pub fn of(method: &Method) -> Self {
         let looks = method.looks();
         let between_steps = if looks.has_beginning() { None } else { BetweenSteps::of(&looks) };
-        Self { looks, between_steps, ends: [vec![], vec![]] }
+        Self { looks, between_steps, fastest: S::zero(), ends: [vec![], vec![]] }
     }
 
     /// The part of a step up to which nothing was unseen, as `ask` has it from the system.
@@ -169,7 +174,7 @@ impl<S: Element> EqualLooks<S> {
         ask: impl Fn(&Taken<'_, S>, &mut dyn System<S>) -> Result<Option<S>>,
     ) -> Result<Option<S>> {
         let [is_first, is_last] = step.is_outermost;
-        let Self { looks, between_steps, ends } = self;
+        let Self { looks, between_steps, fastest, ends } = self;
         let mut seen = None;
         let outermost;
         let mut within = &*looks;
@@ -183,8 +188,16 @@ impl<S: Element> EqualLooks<S> {
             outermost = Looks::at(looks.places().iter().copied().chain(ends));
             within = &outermost;
         }
-        let is_second_order = matches!(system.form(), Form::SecondOrder(_));
-        let thrown = if is_second_order { step.is_thrown() } else { S::Mask::splat(false) };
+        let mut thrown = S::Mask::splat(false);
+        if matches!(system.form(), Form::SecondOrder(_)) {
+            // Where nothing but its beginning tells where a step would have led had it felt nothing.
+            let [mut speed, mut change] = step.speeds();
+            if step.is_one {
+                (speed, change) = (speed.largest_lane(), change.largest_lane());
+            }
+            *fastest = if is_first { speed } else { fastest.max(speed) };
+            thrown = step.asked.and((*fastest * S::splat(THROWN)).less(change));
+        }
         if thrown.any() {
             let straight = step.straight(0, [0.0, 1.0], ends);
             seen = least(seen, ask(&Taken { asked: thrown, looks, ..straight }, system)?);

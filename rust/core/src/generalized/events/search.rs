@@ -3,7 +3,8 @@
 //! The one idea: where the rate is known, a part of the step is understood if the function and its rate inside it are those of
 //! the cubic through its ends; a part that is not is cut in two. A part that is understood has no zeros if the cubic keeps
 //! clear of it by more than it errs; else the function is looked at where the cubic turns, and what changes its sign between
-//! two such points, or comes down towards zero from both, is located on the solution itself.
+//! two such points, or comes down towards zero from both, is located on the solution itself. Where something may hide between
+//! looks ([`Shape`](super::shape::Shape)) a part is cut before any of that is asked.
 
 use super::cubic::Cubic;
 use super::shape::Told;
@@ -20,9 +21,13 @@ const SECOND: f64 = 0.81;
 /// How far a function may leave the cubic, as a part of its range, so that it turns where the cubic does.
 const UNDERSTOOD: f64 = 1e-3;
 
+/// So many parts of a step are cut because something may hide in them: on the edge of what a function is defined for, as that of an
+/// angle at ±π, it may at every scale.
+const CUTS_OF_NARROW: u32 = 512;
+
 /// How often a step is cut, and its parts; and the most looks into one step: enough for a hundred thousand oscillations.
 const CUTS: u32 = 24;
-const LOOKS: u32 = 4_000_000;
+const LOOKS: u32 = 2_000_000;
 
 /// What ends a run whose events are more than can be looked for.
 const TOO_MANY: &str = "the function of an event has more zeros in one step than are looked for, a hundred thousand; end the run \
@@ -71,6 +76,8 @@ pub(super) struct Search<'s> {
     function: &'s mut Working,
     step: &'s mut dyn Interval,
     looks: u32,
+    /// Parts that were cut because something may hide in them.
+    narrow: u32,
     /// What is nothing beside the numbers that the function is made of, once it was asked for.
     rounding: Option<f64>,
     zeros: Vec<Zero>,
@@ -99,7 +106,7 @@ fn crosses(start: f64, end: f64) -> bool {
 
 impl<'s> Search<'s> {
     pub(super) fn new(function: &'s mut Working, step: &'s mut dyn Interval) -> Self {
-        Self { function, step, looks: 0, rounding: None, zeros: vec![], states: vec![] }
+        Self { function, step, looks: 0, narrow: 0, rounding: None, zeros: vec![], states: vec![] }
     }
 
     /// The zeros in the order of the motion, with the state at [`INSIDE`].
@@ -158,8 +165,10 @@ impl<'s> Search<'s> {
             return Err(Error::Convergence { message: TOO_MANY.to_owned(), time: self.step.span().0 });
         }
         for (left, right) in [(a, inside), (inside, b)] {
+            let kept = self.states.len();
             let between = self.look(left.theta + INSIDE * (right.theta - left.theta))?;
             self.part(left, between, right, cuts - 1)?;
+            self.states.truncate(kept);
         }
         Ok(())
     }
@@ -173,7 +182,12 @@ impl<'s> Search<'s> {
         let cubic = Cubic::through(a, b);
         match self.told([a, inside, b]) {
             Some(Told::Clear) => return Ok(()),
-            Some(Told::Narrow) if cuts > 0 && !self.is_rounding(cubic.size(), inside.theta, cuts)? => {
+            Some(Told::Narrow)
+                if cuts > 0
+                    && self.narrow < CUTS_OF_NARROW
+                    && !self.is_rounding(cubic.size(), inside.theta, cuts)? =>
+            {
+                self.narrow += 1;
                 return self.cut([a, inside, b], cuts);
             }
             _ => {}

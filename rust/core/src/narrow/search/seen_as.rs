@@ -14,6 +14,7 @@ const AHEAD: f64 = 6.0;
 /// By what an argument moves within this part of the way to a look, and this part of its mean, it is told whether it turns there.
 const BEFORE_A_LOOK: f64 = 1.0 / 64.0;
 const MOVES: f64 = 0.1;
+
 /// What two looks of an equal step see of what lies between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SeenAs {

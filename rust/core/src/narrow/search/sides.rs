@@ -5,14 +5,16 @@
 
 use super::super::features::{AtEnds, Fades};
 use super::super::way::Way;
-use super::{Criteria, Search, lanes, smaller};
+use super::{Criteria, Features, Search, lanes, smaller};
 use crate::expressions::narrow::Kind;
 use crate::numerics::lanes::{Lanes, WIDTH};
 
-/// Rounds of a search for a change of sides, each in a ninth of the last.
+/// Rounds of a search for a change of sides, each in a ninth of the last; fewer, once it is known to this part of the way to where an
+/// argument turns.
 const ROUNDS: usize = 14;
-/// What lasts no longer than this part of the time is no stretch that steps could be made shorter for.
-const HARDLY: f64 = 1e-12;
+const KNOWN: f64 = 1e-3;
+/// Of a velocity this part is at stake where sides are asked about: less is left to the error of a step.
+const AT_STAKE: f64 = 1e-3;
 /// So many looks that count know a stretch.
 const LOOKS: usize = 3;
 
@@ -22,7 +24,8 @@ pub(super) struct Sampled {
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// A stretch of a way on which no argument changes sides, and places in those before it and after it, as far as they are in the step.
+/// A stretch of a way on which no argument changes sides, and places before it and after it, as far as they are in the step: in the
+/// stretches there, and of equal steps the looks.
 struct Stretch {
     from: f64,
     to: f64,
@@ -37,7 +40,7 @@ impl Search {
         way: &Way,
         sampled: &Sampled,
         sizes: &[f64],
-        Criteria { reach, equal, tolerance }: Criteria,
+        Criteria { reach, equal, .. }: Criteria,
     ) -> Option<f64> {
         let of = self.of.clone();
         let is_switch =
@@ -45,6 +48,9 @@ impl Search {
         let switches: Vec<bool> = (0..of.fades.len()).map(is_switch).collect();
         let mut changes = Vec::new();
         for argument in (0..of.fades.len()).filter(|&a| of.has_absolute(a) || switches[a]) {
+            if !comes_near_zero(&sampled.values[argument]) {
+                continue;
+            }
             for looks in way.looks.places().windows(2) {
                 let index = |look: f64| sampled.places.partition_point(|&place| place < look);
                 let range = [index(looks[0]), index(looks[1])];
@@ -63,15 +69,21 @@ impl Search {
         let middle = |k: usize| stretches.get(k).map(|[from, to]| 0.5 * (from + to));
         let unknown = (0..stretches.len()).find(|&k| {
             let [from, to] = stretches[k];
-            let beside = [k.checked_sub(1).and_then(middle), middle(k + 1)];
+            let segments = [k.checked_sub(1).and_then(middle), middle(k + 1)];
+            let is_inner = segments.iter().all(Option::is_some);
+            let looks = way.looks.places();
+            let beside = if equal {
+                [looks.iter().rfind(|look| **look <= from), looks.iter().find(|look| **look >= to)]
+                    .map(Option::<&f64>::copied)
+            } else {
+                segments
+            };
             // Equal steps are as coarse as they were asked for: what begins or ends in one is known to it. Of others a step control
-            // knows what time hardly tells apart.
-            let is_inner = beside.iter().all(Option::is_some);
-            let counts =
-                is_inner || (!equal && (to - from) * way.h.abs() > HARDLY * way.t.abs().max(way.h.abs()));
-            counts
+            // knows of a corner, but not of two of which it sees one.
+            let goes_on = || !equal && of.is_near_zero_beyond(sampled, k == 0);
+            (is_inner || goes_on())
                 && way.looks.counted_between(from, to) < LOOKS
-                && self.sides_matter(way, (&Stretch { from, to, beside }, &switches), sizes, tolerance)
+                && self.sides_matter(way, (&Stretch { from, to, beside }, &switches), sizes, equal)
         })?;
         // What is known too little at the beginning is left by a step that ends before it changes.
         Some(stretches[unknown][usize::from(unknown == 0)])
@@ -86,6 +98,10 @@ impl Search {
         }
         let lower = |&a: &usize, &b: &usize| (side * values[a]).total_cmp(&(side * values[b]));
         let nearest = (from..=to).min_by(lower).unwrap_or(from);
+        let about = nearest.max(from + 1) - 1..=nearest.min(to - 1) + 1;
+        if side * values[nearest] > 0.0 && !comes_near_zero(&values[about]) {
+            return Vec::new();
+        }
         let about = (places[nearest.max(from + 1) - 1], places[nearest.min(to - 1) + 1]);
         let turning = self.turning(way, argument, about, side < 0.0).at;
         if side * turning.u >= 0.0 {
@@ -97,7 +113,11 @@ impl Search {
 
     /// Where an argument that is on a side of zero at the first of two places, and not at the second, changes over.
     fn change(&mut self, way: &Way, argument: usize, [mut from, mut to]: [f64; 2], side: f64) -> f64 {
+        let turning = to;
         for _ in 0..ROUNDS {
+            if (to - from).abs() <= KNOWN * (turning - from).abs() {
+                break;
+            }
             let part = (to - from) / (WIDTH + 1) as f64;
             let thetas: [f64; WIDTH] = core::array::from_fn(|k| from + part * (k + 1) as f64);
             way.run(&thetas, &mut self.values);
@@ -119,7 +139,7 @@ impl Search {
         way: &Way,
         (stretch, switches): (&Stretch, &[bool]),
         sizes: &[f64],
-        tolerance: f64,
+        equal: bool,
     ) -> bool {
         let Stretch { from, to, beside: places } = *stretch;
         let part = (to - from) / (WIDTH + 1) as f64;
@@ -130,7 +150,7 @@ impl Search {
         let functions = self.functions_at(way, &thetas);
         let here: Vec<f64> =
             (0..self.of.fades.len()).map(|a| self.values.output(a).0[WIDTH / 2].signum()).collect();
-        let actual = self.rates_with(way, &thetas, &functions);
+        let actual = self.rates_with_sides(way, &thetas, &functions);
         let otherwise: [Vec<Lanes>; 2] = [0, 1].map(|side| {
             let mut there = functions.clone();
             let features = self.of.owners.iter().zip(&self.of.kinds);
@@ -144,7 +164,7 @@ impl Search {
                     *function = Lanes([beside.0[side]; WIDTH]);
                 }
             }
-            self.rates_with(way, &thetas, &there)
+            self.rates_with_sides(way, &thetas, &there)
         });
         let time = way.h.abs() * (to - from);
         actual.iter().enumerate().any(|(i, actual)| {
@@ -152,10 +172,35 @@ impl Search {
                 let apart = |side: usize| places[side].map(|_| (actual.0[k] - otherwise[side][i].0[k]).abs());
                 let least =
                     [0, 1].into_iter().filter_map(apart).fold(f64::INFINITY, |least, by| smaller(by, least));
+                // Of a stair between two looks equal steps know as much as of one that is a step.
+                let is_stair = equal
+                    && (actual.0[k] - otherwise[0][i].0[k]) * (actual.0[k] - otherwise[1][i].0[k]) < 0.0;
                 let impulse = least * time;
                 // What is no number matters.
-                impulse.is_nan() || impulse > tolerance * sizes[i]
+                impulse.is_nan() || (impulse > AT_STAKE * sizes[i] && !is_stair)
             })
         })
     }
+}
+
+impl Features {
+    /// Whether an argument of an absolute value comes to zero within a step from the beginning of one, backward, or from its end.
+    fn is_near_zero_beyond(&self, Sampled { places, values }: &Sampled, beginning: bool) -> bool {
+        let last = places.len() - 1;
+        let (edge, inner) = if beginning { (0, 1.min(last)) } else { (last, last.max(1) - 1) };
+        (0..values.len()).filter(|&argument| self.has_absolute(argument)).any(|argument| {
+            let [there, before] = [edge, inner].map(|sample| values[argument][sample]);
+            let moved = (before - there) / (places[edge] - places[inner]).abs();
+            // On its way to zero, no farther from it than it goes in a step.
+            there * moved > 0.0 && there.abs() <= moved.abs()
+        })
+    }
+}
+
+/// Whether an argument may be zero anywhere between samples: between two of them it goes no farther than it does beside.
+fn comes_near_zero(values: &[f64]) -> bool {
+    let most = values.windows(2).fold(0.0_f64, |most, two| most.max((two[1] - two[0]).abs()));
+    let side = values[0].signum();
+    // What is no number is looked for, what does not move at all is not.
+    most != 0.0 && !values.iter().all(|value| value.signum() == side && value.abs() > most)
 }

@@ -8,8 +8,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// More contacts than this are left to sweeps, whose work grows less steeply.
 const MOST: usize = 32;
-/// A direction that is so small beside the largest is one that others have.
+/// A direction that is so small beside the largest is one that others have; what is small, and not so small, tells nothing.
 const DEPENDENT: f64 = 1e-13;
+const SMALL: f64 = 1e-7;
 /// A pull, or an approach, of this part of the largest is rounding.
 const ROUNDING: f64 = 1e-11;
 
@@ -79,6 +80,9 @@ impl AtRest {
         decomposed.p().permute_rows(&mut needed);
         let largest = upper.diagonal().amax();
         let rank = (0..upper.nrows()).take_while(|&k| upper[(k, k)].abs() > DEPENDENT * largest).count();
+        if (0..rank).any(|k| upper[(k, k)].abs() < SMALL * largest) {
+            return None;
+        }
         let upper = upper.view((0, 0), (rank, rank)).into_owned();
         let along = upper.transpose().solve_lower_triangular(&needed.rows(0, rank))?;
         let moved = across.columns(0, rank) * &along;
@@ -90,8 +94,17 @@ impl AtRest {
         for (column, &contact) in active.iter().enumerate() {
             changes[contact] = all[column] / (contacts[contact].1.reduced / heaviest).sqrt();
         }
-        let moved =
-            roots.iter().enumerate().map(|(body, root)| core::array::from_fn(|c| moved[3 * body + c] / root));
-        Some(Self { changes, moved: moved.collect() })
+        let mut moved: Vec<[f64; 3]> = roots
+            .iter()
+            .enumerate()
+            .map(|(body, root)| core::array::from_fn(|c| moved[3 * body + c] / root))
+            .collect();
+        // Impulses leave the momentum as it is, whatever rounding made of them.
+        let total: f64 = roots.iter().map(|root| root * root).sum();
+        for c in 0..3 {
+            let drift = roots.iter().zip(&moved).map(|(root, by)| root * root * by[c]).sum::<f64>() / total;
+            moved.iter_mut().for_each(|by| by[c] -= drift);
+        }
+        Some(Self { changes, moved })
     }
 }

@@ -4,8 +4,8 @@
 //! those together that bring all of these contacts to rest along their lines (the projection of the velocities, in the
 //! metric of the masses, onto those with which nobody approaches), and with restitution 1 + e times as much. So a scene
 //! that is its own mirror image stays that. J. J. Moreau, *Unilateral contact and dry friction in finite freedom
-//! dynamics*, in Nonsmooth Mechanics and Applications (Springer, 1988), §8; the projection at once
-//! ([`AtRest`]), and of many contacts by sweeps over them as M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
+//! dynamics*, in Nonsmooth Mechanics and Applications (Springer, 1988), §8; the projection by sweeps over the contacts as
+//! M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235, and at once ([`AtRest`]) where they come to no end.
 
 use super::at_rest::AtRest;
 use super::impact::Meeting;
@@ -67,16 +67,16 @@ impl Impact {
             .collect();
         let fastest = contacts.iter().fold(0.0_f64, |most, contact| most.max(contact.meeting.speed));
         let mut moved = vec![[0.0; 3]; bodies.len()];
-        let masses: Vec<f64> = bodies.iter().map(|&body| self.mass[body]).collect();
-        let meetings: Vec<([usize; 2], &Meeting)> =
-            contacts.iter().map(|contact| (contact.places, &contact.meeting)).collect();
-        if let Some(found) = AtRest::of(&meetings, &masses, fastest) {
-            moved = found.moved;
-            for (contact, change) in contacts.iter_mut().zip(found.changes) {
-                contact.change = change;
+        if !rest(&mut contacts, &mut moved, fastest) {
+            let masses: Vec<f64> = bodies.iter().map(|&body| self.mass[body]).collect();
+            let meetings: Vec<([usize; 2], &Meeting)> =
+                contacts.iter().map(|contact| (contact.places, &contact.meeting)).collect();
+            if let Some(found) = AtRest::of(&meetings, &masses, fastest) {
+                moved = found.moved;
+                for (contact, change) in contacts.iter_mut().zip(found.changes) {
+                    contact.change = change;
+                }
             }
-        } else {
-            rest(&mut contacts, &mut moved, fastest);
         }
         // What all impulses together are short of keeping the energy by, with restitution 1: nothing but what the sweeps
         // have left.
@@ -111,8 +111,8 @@ impl Impact {
 }
 
 /// The impulses that bring contacts to rest, none of which pulls: changes of velocities along the run, in units of the
-/// fastest.
-fn rest(contacts: &mut [Contact], moved: &mut [[f64; 3]], fastest: f64) {
+/// fastest; whether sweeps came to an end of it.
+fn rest(contacts: &mut [Contact], moved: &mut [[f64; 3]], fastest: f64) -> bool {
     for _ in 0..SWEEPS {
         let mut most = 0.0_f64;
         for contact in &mut *contacts {
@@ -128,9 +128,10 @@ fn rest(contacts: &mut [Contact], moved: &mut [[f64; 3]], fastest: f64) {
             most = most.max(more.abs());
         }
         if most <= f64::EPSILON {
-            return;
+            return true;
         }
     }
+    false
 }
 
 #[cfg(test)]
@@ -193,7 +194,7 @@ mod tests {
             let pairs = bodies.fastest(&[(0, 1), (0, 2)]);
             assert_eq!(pairs.len(), 2);
             let collisions = bodies.bounce_together(&pairs, 0.5, 0.0);
-            // Of the angle between the contacts, the root of the ratio of the masses.
+            // What is light is told as well as the angle between its contacts, the root of the ratio of the masses.
             let rounding = 1e-15 / light.sqrt();
             let wanted = [0.0, 0.5, -0.5];
             for (found, wanted) in bodies.velocity.iter().zip(wanted) {
@@ -201,6 +202,8 @@ mod tests {
             }
             let lost: f64 = collisions.iter().map(|(collision, _)| collision.energy_lost).sum();
             assert!((lost - 0.75).abs() <= rounding, "{light}: {lost}");
+            // Momentum is that of nothing that is light.
+            assert!(momentum(&bodies)[0].abs() <= 1e-15, "{light}");
         }
     }
 

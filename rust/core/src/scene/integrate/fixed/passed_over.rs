@@ -24,9 +24,11 @@ const CALM: f64 = 32.0;
 pub(super) struct PassedOver {
     /// Of each unit; nothing, where the forces have nothing narrow.
     reports: Vec<Option<Report>>,
+    /// Whether lanes are parts of one unit.
+    is_one: bool,
     /// What asks of each step.
     looks: Option<EqualLooks<Lanes>>,
-    /// The nodes at which the first step begins and the last one ends.
+    /// The nodes at which the first step begins, and the last one, which may be a part of one.
     first: u64,
     last: u64,
     /// The nodes up to which nothing is looked for, lane by lane: a copy is asked where it is alone.
@@ -39,9 +41,10 @@ impl PassedOver {
         if job.plan.passes_over() {
             Self {
                 reports: vec![None; units],
+                is_one: job.plan.layout == Layout::Packed,
                 looks: Some(EqualLooks::of(job.plan.method)),
                 first: job.plan.from,
-                last: place(job, job.end()).node,
+                last: last_node(job),
                 calm_until: [0; WIDTH],
             }
         } else {
@@ -78,8 +81,13 @@ impl PassedOver {
         let asked = running.and((0..WIDTH).fold(Bits(0), due));
         let Some(looks) = self.looks.as_mut().filter(|_| asked.any()) else { return Ok(Bits(0)) };
         let (times, ends) = ((Lanes::splat(from), Lanes::splat(h)), [before.all().0, after.all().0]);
-        let step =
-            EqualStep { asked, times, ends, is_outermost: [node == self.first, node + 1 >= self.last] };
+        let step = EqualStep {
+            asked,
+            times,
+            ends,
+            is_outermost: [node == self.first, node >= self.last],
+            is_one: self.is_one,
+        };
         let points = system.form().evaluated();
         let has_bodies = before.q().len() > points;
         let seen = looks.ask(step, system, |taken, system| {
@@ -116,6 +124,12 @@ impl PassedOver {
     pub(super) fn take(&mut self, lane: usize) -> Option<Report> {
         self.reports.get_mut(lane).and_then(Option::take)
     }
+}
+
+/// The node at which the last step of a run begins.
+fn last_node(job: &Job<'_>) -> u64 {
+    let end = place(job, job.end());
+    if end.past.is_some() { end.node } else { end.node.saturating_sub(1) }
 }
 
 impl Records<'_> {
