@@ -292,14 +292,10 @@ impl Search {
                 let least = smaller(apart(0), apart(1));
                 let impulse = least * time;
                 let is_between = least <= (frozen[0][i].0[*k] - frozen[1][i].0[*k]).abs();
-                let is_known = match seen_as {
-                    SeenAs::Nothing | SeenAs::Wave => false,
-                    SeenAs::FarEnd => is_between,
-                    // It may be all there is to move one number, but not all of them.
-                    SeenAs::Flank => is_between && impulse <= tolerance * most,
-                };
                 // What is no number matters.
-                impulse.is_nan() || (impulse > tolerance * sizes[i] && !is_known)
+                impulse.is_nan()
+                    || (impulse > tolerance * sizes[i]
+                        && !(is_between && seen_as.knows(impulse, (tolerance, most))))
             })
         };
         (0..points.len()).find(matters).map(|k| points[k].theta)

@@ -7,8 +7,10 @@ use super::super::features::{AtEnds, Fades};
 use super::super::way::Way;
 use super::{Piece, Search, lanes, smaller};
 
+/// Of the greatest velocity no more than this part may change far from the middle of a wall that equal steps see.
+const FLANK: f64 = 0.1;
 /// On one side of these a function of an argument is at a far end of itself.
-const FAR: f64 = 3.0;
+const FAR: f64 = 2.0;
 /// What falls as a power, and moves by much between two looks, comes to its pole in no more than so many times their distance.
 const AHEAD: f64 = 6.0;
 /// By what an argument moves within this part of the way to a look, and this part of its mean, it is told whether it turns there.
@@ -25,8 +27,23 @@ pub(super) enum SeenAs {
     /// What rises, or falls, to what either of them sees: a far end of a pulse, which comes and goes, or the way to a pole, which
     /// tells of itself.
     FarEnd,
-    /// The same of a wall that a motion leads through.
+    /// The same of a wall that a motion leads through: far from its middle, or beside it.
+    FarFlank,
     Flank,
+}
+
+impl SeenAs {
+    /// Whether what is between what two looks see, and gives this impulse, is known to them well enough; the greatest number that is
+    /// moved, and what may be unseen as a part of one.
+    pub(super) fn knows(self, impulse: f64, (tolerance, most): (f64, f64)) -> bool {
+        match self {
+            Self::Nothing | Self::Wave => false,
+            Self::FarEnd => true,
+            // It may be all there is to move one number, but not all of them.
+            Self::FarFlank => impulse <= FLANK * most,
+            Self::Flank => impulse <= tolerance * most,
+        }
+    }
 }
 
 impl Search {
@@ -40,6 +57,8 @@ impl Search {
             SeenAs::Nothing
         } else if self.is_moved_by_time(way, piece) || self.leads_to_a_pole(way, piece) {
             SeenAs::FarEnd
+        } else if self.is_far(way, piece) {
+            SeenAs::FarFlank
         } else {
             SeenAs::Flank
         }
@@ -57,11 +76,17 @@ impl Search {
         let [from, to] = piece.looks;
         way.run_at_rest(from, &lanes(&[from, to]), &mut self.values);
         let u = self.values.output(piece.argument).0;
-        let is_far = matches!(self.of.at_ends[piece.argument], AtEnds::Power(_))
+        let (moved, all) = ((u[1] - u[0]).abs(), (piece.to.u - piece.from.u).abs());
+        moved >= 0.5 * all && self.is_far(way, piece)
+    }
+
+    /// Whether a function of an argument is at a far end at both looks; of a power nobody knows.
+    fn is_far(&mut self, way: &Way, piece: &Piece) -> bool {
+        way.run(&lanes(&piece.looks), &mut self.values);
+        let u = self.values.output(piece.argument).0;
+        matches!(self.of.at_ends[piece.argument], AtEnds::Power(_))
             || u[0].max(u[1]) < -FAR
-            || u[0].min(u[1]) > FAR;
-        let moved = (piece.to.u - piece.from.u).abs();
-        is_far && (u[1] - u[0]).abs() >= 0.5 * moved
+            || u[0].min(u[1]) > FAR
     }
 
     /// Whether an argument moves at both looks about as it does between them: at the top of a wall, and of anything else, it turns.

@@ -5,7 +5,7 @@
 
 use super::super::features::{AtEnds, Fades};
 use super::super::way::Way;
-use super::{Criteria, Features, Search, lanes, smaller};
+use super::{Criteria, Search, lanes};
 use crate::expressions::narrow::Kind;
 use crate::numerics::lanes::{Lanes, WIDTH};
 
@@ -78,10 +78,8 @@ impl Search {
             } else {
                 segments
             };
-            // Equal steps are as coarse as they were asked for: what begins or ends in one is known to it. Of others a step control
-            // knows of a corner, but not of two of which it sees one.
-            let goes_on = || !equal && of.is_near_zero_beyond(sampled, k == 0);
-            (is_inner || goes_on())
+            // Equal steps are as coarse as they were asked for: what begins or ends in one is known to it.
+            (is_inner || !equal)
                 && way.looks.counted_between(from, to) < LOOKS
                 && self.sides_matter(way, (&Stretch { from, to, beside }, &switches), sizes, equal)
         })?;
@@ -170,29 +168,14 @@ impl Search {
         actual.iter().enumerate().any(|(i, actual)| {
             (0..WIDTH).any(|k| {
                 let apart = |side: usize| places[side].map(|_| (actual.0[k] - otherwise[side][i].0[k]).abs());
-                let least =
-                    [0, 1].into_iter().filter_map(apart).fold(f64::INFINITY, |least, by| smaller(by, least));
+                let least = [0, 1].into_iter().filter_map(apart).fold(f64::NAN, f64::min);
                 // Of a stair between two looks equal steps know as much as of one that is a step.
                 let is_stair = equal
                     && (actual.0[k] - otherwise[0][i].0[k]) * (actual.0[k] - otherwise[1][i].0[k]) < 0.0;
                 let impulse = least * time;
-                // What is no number matters.
-                impulse.is_nan() || (impulse > AT_STAKE * sizes[i] && !is_stair)
+                // At zero itself, where rounding may put it, there is no number.
+                impulse > AT_STAKE * sizes[i] && !is_stair
             })
-        })
-    }
-}
-
-impl Features {
-    /// Whether an argument of an absolute value comes to zero within a step from the beginning of one, backward, or from its end.
-    fn is_near_zero_beyond(&self, Sampled { places, values }: &Sampled, beginning: bool) -> bool {
-        let last = places.len() - 1;
-        let (edge, inner) = if beginning { (0, 1.min(last)) } else { (last, last.max(1) - 1) };
-        (0..values.len()).filter(|&argument| self.has_absolute(argument)).any(|argument| {
-            let [there, before] = [edge, inner].map(|sample| values[argument][sample]);
-            let moved = (before - there) / (places[edge] - places[inner]).abs();
-            // On its way to zero, no farther from it than it goes in a step.
-            there * moved > 0.0 && there.abs() <= moved.abs()
         })
     }
 }

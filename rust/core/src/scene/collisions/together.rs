@@ -202,8 +202,8 @@ mod tests {
             }
             let lost: f64 = collisions.iter().map(|(collision, _)| collision.energy_lost).sum();
             assert!((lost - 0.75).abs() <= rounding, "{light}: {lost}");
-            // Momentum is that of nothing that is light.
-            assert!(momentum(&bodies)[0].abs() <= 1e-15, "{light}");
+            // Momentum is kept to some roundings of the heavy ones' speeds.
+            assert!(momentum(&bodies)[0].abs() <= 1e-14, "{light}");
         }
     }
 
