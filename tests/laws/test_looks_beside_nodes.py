@@ -50,7 +50,7 @@ def test_a_wall_turns_a_body_back_or_is_told_wherever_it_is_in_a_step(width: flo
             vv.Scene(body, wall).run(2.0, method=method, dt=DT)
 
 
-# blanes_moan_rkn6_14 looks 1.5 widths before and after one of these places: what turns the body back is a flank, seen coarsely.
+# blanes_moan_rkn6_14 looks 1.5 widths before and after one of these places: a flank, seen coarsely, turns the body.
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "blanes_moan_rkn6_14"])
 @pytest.mark.parametrize("name", WALLS)
 def test_so_is_one_without_a_potential_which_has_no_energy_to_tell(name: str, method: str) -> None:

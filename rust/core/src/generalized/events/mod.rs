@@ -97,7 +97,7 @@ pub(super) trait Interval {
 
 /// A function at work.
 enum Working {
-    Expression(Machine<f64>, Option<Shape>),
+    Expression(Machine<f64>, Option<Box<Shape>>),
     Called(Arc<Called>),
 }
 
@@ -105,7 +105,7 @@ impl Working {
     fn of(function: &Function, parameters: &[f64]) -> Self {
         match function {
             Function::Expression(code, bounds) => {
-                let shape = bounds.as_ref().map(|bounds| Shape::new(bounds, parameters));
+                let shape = bounds.as_ref().map(|bounds| Box::new(Shape::new(bounds, parameters)));
                 Self::Expression(Machine::new(code.clone(), parameters), shape)
             }
             Function::Called(call) => Self::Called(call.clone()),
@@ -125,7 +125,7 @@ impl Working {
     /// Its bounds, of one in which something may hide.
     fn shape(&mut self) -> Option<&mut Shape> {
         match self {
-            Self::Expression(_, shape) => shape.as_mut(),
+            Self::Expression(_, shape) => shape.as_deref_mut(),
             Self::Called(_) => None,
         }
     }
