@@ -126,7 +126,13 @@ impl Features {
     /// Expressions that are too large.
     pub fn of(mut of: Equations<'_>) -> Result<Option<Self>> {
         let roots = roots(of.systems, of.rates);
-        let found = narrow::narrow(of.graph, &roots);
+        let mut found = narrow::narrow(of.graph, &roots);
+        // Where a velocity turns, as under dry friction, it is as small as anything: step controls know such corners.
+        let velocities = of.numbers as u32 / 2;
+        let turns = |argument: Id| {
+            of.graph.any(&[argument], |node| matches!(node, Node::Variable(index) if *index >= velocities))
+        };
+        found.retain(|one| one.kind != Kind::Absolute || !turns(one.argument));
         if found.is_empty() {
             return Ok(None);
         }

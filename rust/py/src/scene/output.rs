@@ -261,9 +261,9 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
         }
         Ending::NoStep => Some(Error::Convergence {
             message: "the step size fell to zero, and no bodies are close: the tolerances ask for more than a step can \
-                      give (raise rtol or atol), the motion goes to infinity there (end the run before), or steps are so \
-                      long that forces on the way are beyond float64 (lower the tolerances, or set max_step); under a \
-                      time transformation, that dt is too long"
+                      give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
+                      them, or set max_step); or the motion goes to infinity there (end the run before); under a time \
+                      transformation, that dt is too long"
                 .to_owned(),
             time,
         }),
