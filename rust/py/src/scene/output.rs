@@ -296,8 +296,10 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
             time,
         }),
         Ending::NotFinite => Some(Error::Convergence {
-            message: "after the last output the state became infinite or undefined: the motion itself goes to infinity \
-                      (end the run before), or a smaller step, a softening or an adaptive method may pass"
+            message: "after the last output the state became infinite or undefined: the motion itself goes to infinity, or \
+                      a step came where a formula has no number, such as exactly on the corner of an absolute value (end \
+                      the run before, or start or step a little otherwise); or a smaller step, a softening or an adaptive \
+                      method may pass"
                 .to_owned(),
             time,
         }),
