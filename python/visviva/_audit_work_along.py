@@ -6,6 +6,7 @@ bodies which are left, with the masses that they have then.
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -13,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core, _expression_table
+from visviva._accuracy import callers_inside
 from visviva._keywords import known_keywords
 from visviva._mergers import eras, has_mergers
-from visviva.errors import InvalidInput
+from visviva.errors import AccuracyWarning, InvalidInput
 from visviva.forces import DrivenForce, ExpressedForce, Force
 from visviva.trajectory import Trajectory
 
@@ -25,6 +27,11 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
 
 __all__ = ["looks_at_time", "of_any_body", "work_along"]
+
+# Of the work that is done, without regard to sign, so much may be missed without a word.
+_TOLERATED = 0.03
+# So many spans between times are looked at: what all forces do there is asked time by time.
+_SPANS = 2000
 
 
 def of_any_body(force: Force) -> Force:
@@ -65,6 +72,11 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
         From 0 at the first time; 0 throughout for a body on which the force does not act. All forces together do the
         work by which the kinetic energy grows.
 
+    Warns
+    -----
+    visviva.AccuracyWarning
+        If times are so far apart that the motion between them is not known.
+
     Raises
     ------
     visviva.InvalidInput
@@ -104,25 +116,63 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
             f"expected what `Scene.run` gives, got {type(trajectory).__name__}; of an ensemble's run give out[i]",
         )
     t, x, v = trajectory.t, trajectory.position, trajectory.velocity
-    work = np.zeros(x.shape[:2])
     before, after = slice(None, -1), slice(1, None)
     h = np.diff(t)[:, None, None]
     middle_t = 0.5 * (t[before] + t[after])
     middle_x = 0.5 * (x[before] + x[after]) + 0.125 * h * (v[before] - v[after])
     # Between two rows of one time nothing is done, whatever the velocity.
     middle_v = 1.5 * (x[after] - x[before]) / np.where(h != 0.0, h, 1.0) - 0.25 * (v[before] + v[after])
-    ends, middle = np.zeros_like(work), np.zeros_like(work[before])
+    ends, middle = np.zeros_like(x), np.zeros_like(x[before])
     for rows, scene, there in eras(trajectory, _alone(trajectory, force)):
         # The span before the first time of an era is of the one before.
         between = slice(rows.start, min(rows.stop, len(middle)))
         chosen = slice(None) if there is None else there
-        ends[rows, chosen] = _power(scene, t[rows], x[rows][:, chosen], v[rows][:, chosen])
-        middle[between, chosen] = _power(
+        ends[rows, chosen] = _forces(scene, t[rows], x[rows][:, chosen], v[rows][:, chosen])
+        middle[between, chosen] = _forces(
             scene, middle_t[between], middle_x[between][:, chosen], middle_v[between][:, chosen]
         )
-    steps = h[:, :, 0] / 6.0 * (ends[before] + 4.0 * middle + ends[after])
-    np.cumsum(steps, axis=0, out=work[after])
+    _warn_if_far_apart(trajectory, middle_v, middle)
+    at_ends, at_middle = (np.einsum("tnc,tnc->tn", *each) for each in ((ends, v), (middle, middle_v)))
+    work = np.zeros(x.shape[:2])
+    np.cumsum(h[:, :, 0] / 6.0 * (at_ends[before] + 4.0 * at_middle + at_ends[after]), axis=0, out=work[after])
     return work
+
+
+def _warn_if_far_apart(trajectory: Trajectory, middle_v: Any, middle: Any) -> None:
+    """Warn where the cubics between the times are not the motion: their accelerations at the ends are not those there.
+
+    A cubic whose acceleration is off by δ at its ends is off by hδ/8 in its velocity midway.
+    """
+    t, x, v = trajectory.t, trajectory.position, trajectory.velocity
+    apart, every = np.diff(t), 1 + len(t) // _SPANS
+    impulses = np.abs(apart)[:, None] * np.linalg.norm(middle, axis=-1)
+    speeds = np.maximum(np.linalg.norm(middle_v, axis=-1), np.linalg.norm(v, axis=-1)[1:])
+    done, missed = np.zeros(x.shape[1]), np.zeros(x.shape[1])
+    for rows, scene, there in eras(trajectory):
+        spans = np.arange(rows.start, rows.stop - 1, every)
+        if len(spans) == 0 or scene.rigid_bodies:
+            continue
+        bodies = slice(None) if there is None else there
+        both = np.stack([spans, spans + 1])
+        places, moving = x[both][:, :, bodies], v[both][:, :, bodies]
+        states = (each.reshape(-1, *places.shape[2:]) for each in (places, moving))
+        given = _forces(scene, t[both.ravel()], *states, per_mass=True).reshape(places.shape)
+        h = apart[spans][:, None, None]
+        mean = (places[1] - places[0]) / np.where(h != 0.0, h, 1.0)
+        first = h * given[0] - (6.0 * mean - 4.0 * moving[0] - 2.0 * moving[1])
+        last = h * given[1] + (6.0 * mean - 2.0 * moving[0] - 4.0 * moving[1])
+        off = np.maximum(np.linalg.norm(first, axis=-1), np.linalg.norm(last, axis=-1)) / 8.0
+        done[bodies] += (impulses[spans] * speeds[spans]).sum(axis=0)[bodies]
+        missed[bodies] += (impulses[spans][:, bodies] * off).sum(axis=0)
+    share = missed / np.where(done > 0.0, done, 1.0)
+    body = int(share.argmax())
+    if share[body] > _TOLERATED:
+        warnings.warn(
+            f"the times of the run are too far apart for its motion: about {100.0 * share[body]:.0f} % of the work "
+            f"done on body {body} is not known; record more, as the error falls with the fourth power of their number",
+            AccuracyWarning,
+            stacklevel=callers_inside(),
+        )
 
 
 def _alone(trajectory: Trajectory, force: Force) -> Scene:
@@ -142,14 +192,14 @@ def _alone(trajectory: Trajectory, force: Force) -> Scene:
     return alone
 
 
-def _power(scene: Scene, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
-    """F·v of every body at every time, of the one force of a scene, or none that is left in it."""
+def _forces(scene: Scene, t: Any, x: Any, v: Any, *, per_mass: bool = False) -> NDArray[np.float64]:
+    """Those on every body at every time, (T, N, 3), of all the forces that a scene has; or the accelerations."""
     mass = scene.particles.mass
-    power = np.zeros(x.shape[:2])
+    given = np.zeros(x.shape)
     if len(t):
         for force in scene.forces:
-            power += np.einsum("tnc,tnc->tn", mass[:, None] * _accelerations(force, mass, t, x, v), v)
-    return power
+            given += _accelerations(force, mass, t, x, v)
+    return given if per_mass else mass[:, None] * given
 
 
 def _accelerations(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:

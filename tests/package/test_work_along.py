@@ -65,13 +65,48 @@ ON_SOME = [vv.ExpressionForce(force=lambda r, v, t: (-r[0] * v[1], 0 * r[1], -r[
 
 @pytest.mark.parametrize("force", [*AT_ALL_TIMES, *ONE_NUMBER, *ON_SOME], ids=lambda force: type(force).__name__)
 def test_times_are_taken_together(force: vv.forces.Force, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The ends of the steps, and their middles: two calls for any number of times."""
+    """The ends of the steps, their middles, and what moves the bodies: three calls for any number of times."""
     out = vv.Scene(BODIES, force).run(t=np.linspace(0.0, 1.0, 101))
     calls: list[int] = []
     once = _core.acceleration
     monkeypatch.setattr(_core, "acceleration", lambda **given: [calls.append(1), once(**given)][1])
     vv.audit.work_along(out, force)
-    assert len(calls) == 2
+    assert len(calls) == 3
+
+
+def swinging(**more: Any) -> vv.Scene:
+    """A damped oscillator of period 4, turning around its center."""
+    bodies = vv.Particles([2.0], [[1.0, 0, 0]], [[0, 1.5, 0]])
+    return vv.Scene(bodies, vv.Harmonic(k=0.5 * np.pi**2), DRAG, **more)
+
+
+DRAG = vv.LinearDrag(0.3)
+
+
+@pytest.mark.parametrize("times", [2, 3, 5, 8, 12])
+def test_times_that_do_not_tell_the_motion_are_told(times: int) -> None:
+    """With two of a whole motion its work was given as 7 times what it is, without a word; told is the size of it."""
+    scene = swinging()
+    exact = vv.audit.work_along(scene.run(t=np.linspace(0.0, 12.0, 2001)), DRAG)[-1, 0]
+    with pytest.warns(vv.AccuracyWarning, match=r"too far apart .* % of the work done on body 0") as told:
+        work = vv.audit.work_along(scene.run(t=np.linspace(0.0, 12.0, times)), DRAG)[-1, 0]
+    share = float(str(told[0].message).split("about ")[1].split(" %")[0]) / 100.0
+    # An estimate, of the whole without regard to sign: the work of a drag has one.
+    assert abs(work / exact - 1.0) / 6.0 < share < 6.0 * abs(work / exact - 1.0) + 0.5
+
+
+def test_times_that_tell_the_motion_are_not_warned_of() -> None:
+    """Ten to a period: warnings are errors in these tests. One span is enough for a parabola, however long."""
+    scene = swinging()
+    vv.audit.work_along(scene.run(t=np.linspace(0.0, 12.0, 41)), DRAG)
+    field = vv.UniformField((0.0, 0.0, -10.0))
+    thrown = vv.Scene(vv.Particles([2.0], [[0.0, 0, 0]], [[1.0, 0, 5.0]]), field)
+    for end in (1.0, 1e3):
+        (start, fallen) = vv.audit.work_along(thrown.run(t=[0.0, end]), field)[:, 0]
+        depth = 5.0 * end - 5.0 * end**2
+        # A dozen roundings of the largest term.
+        assert start == 0.0
+        assert fallen == pytest.approx(-20.0 * depth, rel=1e-14, abs=1e-13 * end**2)
 
 
 def test_refusals_count_the_bodies_of_the_run() -> None:
