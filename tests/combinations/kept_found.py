@@ -335,4 +335,11 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             collisions="bounce",
         ),
     ),
+    # A bounce is an apsis, where what is told is not zero but of another sign than before.
+    (
+        "a_located_event_is_a_zero_at_its_state",
+        Recipe(
+            method="auto", bodies=2, seed=31, at_origin=True, steps=3, decades=5, collisions="bounce", restitution=1.0
+        ),
+    ),
 ]
