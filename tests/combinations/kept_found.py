@@ -342,4 +342,20 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             method="auto", bodies=2, seed=31, at_origin=True, steps=3, decades=5, collisions="bounce", restitution=1.0
         ),
     ),
+    # Half of the steps, which are taken again where energies changed, ended early, and progress stopped at 114 of 133.
+    (
+        "progress_ends_at_its_total",
+        Recipe(
+            method="midpoint",
+            bodies=10,
+            forces=(("Drag", 17), ("Coulomb", 46)),
+            seed=8947,
+            tame=False,
+            own=("velocity",),
+            steps=38,
+            decades=9,
+            outputs=2,
+            at_origin=False,
+        ),
+    ),
 ]
