@@ -57,7 +57,11 @@ class Declared:
         for one, other in zip(first, second, strict=False):
             if one == other:
                 i, j = (p.name for p in self._parameters if p.kind == "indices")
-                raise InvalidInput(j, f"expected another body than {i}, got {one!r} for both; give two that are apart")
+                raise InvalidInput(
+                    j,
+                    f"expected another body than {i}, got {one!r} for both, which are bodies by index or name: to a "
+                    "fixed place leads Harmonic(k, center=…), or an ExpressionForce with a length of its own",
+                )
 
     def _values(self) -> dict[str, Any]:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}

@@ -127,6 +127,7 @@ REFUSED = [
     (one(lambda q, v, t: v[0] or q[0]), "L", "must not branch on coordinates"),
     (one(lambda q, v, t: np.maximum(q[0], 0.0)), "L", "must not branch on coordinates"),
     (one(lambda q, v, t: math.sin(q[0])), "L", "use NumPy's functions, as np.sin, and not those of math"),
+    (one(lambda q, v, t: np.interp(q[0], [0.0, 1.0], [0.0, 1.0])), "L", "tables, as np.interp, in whose place stands"),
     (one(lambda q, v, t: np.array([v[0], q[0]])), "L", "expected one number of the function, got ndarray"),
     (one(lambda q, v, t: None), "L", "expected one number of the function, got NoneType"),
     (one(lambda q, v, t: 1j * v[0]), "L", "got complex in it"),

@@ -211,6 +211,13 @@ def test_forces_refuse_by_name(force: object, argument: str) -> None:
     assert caught.value.argument == argument
 
 
+@pytest.mark.parametrize("link", [lambda *ends: vv.Spring(*ends, k=1.0), lambda *ends: vv.Damper(*ends, c=1.0)])
+def test_an_anchor_is_no_body(link: object) -> None:
+    """Who gives a place for an end is told what leads to one."""
+    with pytest.raises(vv.InvalidInput, match=r"are bodies by index or name: to a fixed place leads Harmonic"):
+        link(0, [0, 0, 0])  # type: ignore[operator]
+
+
 def test_coincident_ends_of_a_spring_with_a_length_are_refused() -> None:
     bodies = vv.Particles([1.0, 1.0], np.zeros((2, 3)))
     with pytest.raises(vv.InvalidInput, match="distinct ends"):

@@ -269,7 +269,10 @@ class Expression:
     __hash__ = object.__hash__
 
     def __float__(self) -> float:
-        raise self._refused("an expression is no number: use NumPy's functions, as np.sin, and not those of math")
+        raise self._refused(
+            "an expression is no number: use NumPy's functions, as np.sin, and not those of math or tables, "
+            "as np.interp, in whose place stands a formula: a polynomial or a sum of sines fitted to them"
+        )
 
     def _rounded(self, *_: object) -> NoReturn:
         self._leaps("round")

@@ -179,8 +179,11 @@ impl Projector {
         let n = self.of.coordinates;
         let most = if start { AT_THE_START } else { AFTER_A_STEP };
         let before = y[n..].to_vec();
+        // Without constraints of places the masses alone would be asked, which may be singular where with all constraints the motion
+        // is not.
+        let of_places = if self.of.holonomic == 0 { 0 } else { most };
         for (machine, from, repeated) in
-            [(&mut self.places, 0, most), (&mut self.velocities, n, if start { 3 } else { 1 })]
+            [(&mut self.places, 0, of_places), (&mut self.velocities, n, if start { 3 } else { 1 })]
         {
             let mut last = f64::INFINITY;
             for _ in 0..repeated {
