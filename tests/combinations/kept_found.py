@@ -358,4 +358,16 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             at_origin=False,
         ),
     ),
+    # Two oblate fields of one body, of J2 that nearly cancel: their sum is rounded as each of them is.
+    (
+        "action_is_reaction",
+        Recipe(
+            method="sofroniou_spaletta8",
+            bodies=2,
+            massless=1,
+            forces=(("Oblate", 22), ("RotatingFrame", 30)),
+            seed=20219,
+            drifting=True,
+        ),
+    ),
 ]
