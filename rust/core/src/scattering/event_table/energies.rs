@@ -17,6 +17,8 @@ use core::f64::consts::PI;
 const ORDERS: [usize; 4] = [3, 5, 9, 17];
 /// Bytes of all of them.
 const MOST_BYTES: usize = 1 << 20;
+/// An error may fall so much further than by the rule that the last order is not tried without hope.
+const FASTER: f64 = 100.0;
 /// Places at which the whole is tried.
 const CERTIFYING: u64 = 768;
 
@@ -42,18 +44,24 @@ impl Energies {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Option<Self>> {
+        let mut tables: Vec<EventTable> = Vec::new();
+        let mut errors: Vec<f64> = Vec::new();
         for order in ORDERS {
             let last = (order - 1) as f64;
             let least = low / high;
             let shares =
                 (0..order).map(|k| 0.5 * (1.0 + least) + 0.5 * (1.0 - least) * cos(PI * k as f64 / last));
             let energies: Vec<f64> = shares.map(|share| (low / share).clamp(low, high)).collect();
-            let tables = for_chunks(threads, order, ticker, |k, ticker| {
-                EventTable::build(deflector, energies[k], b_max, 1, ticker)
+            // Every second energy is one of the order before.
+            let stride = if tables.is_empty() { 1 } else { 2 };
+            let new: Vec<f64> = energies.iter().skip(stride - 1).step_by(stride).copied().collect();
+            let built = for_chunks(threads, new.len(), ticker, |k, ticker| {
+                EventTable::build(deflector, new[k], b_max, 1, ticker)
             })?;
-            if tables.iter().any(|table| table.pieces.contains(&Piece::Captured)) {
+            if built.iter().any(|table| table.pieces.contains(&Piece::Captured)) {
                 return Ok(None);
             }
+            tables = alternating(tables, built);
             let bytes: usize = tables.iter().map(EventTable::bytes).sum();
             if bytes > MOST_BYTES {
                 return Ok(None);
@@ -63,14 +71,19 @@ impl Energies {
                 let size = if k == 0 || k + 1 == order { 0.5 } else { 1.0 };
                 if k.is_multiple_of(2) { size } else { -size }
             };
-            let tables =
+            let weighted =
                 tables.into_iter().enumerate().map(|(k, table)| (low / energies[k], weight(k), table));
-            let mut made = Self { low, tables: tables.collect(), error: 0.0 };
+            let mut made = Self { low, tables: weighted.collect(), error: 0.0 };
             let error = made.tried(deflector, [low, high], b_max, threads, ticker)?;
             if error <= MOST_ERROR {
                 made.error = error;
                 return Ok(Some(made));
             }
+            errors.push(error);
+            if is_in_vain(&errors) {
+                return Ok(None);
+            }
+            tables = made.tables.into_iter().map(|(_, _, table)| table).collect();
         }
         Ok(None)
     }
@@ -132,6 +145,23 @@ impl Energies {
         }
         Ok(worst)
     }
+}
+
+/// The tables of an order, in turn of the order before and new ones; the new ones where there are no others.
+fn alternating(before: Vec<EventTable>, new: Vec<EventTable>) -> Vec<EventTable> {
+    if before.is_empty() {
+        return new;
+    }
+    let mut new = new.into_iter();
+    before.into_iter().flat_map(|table| [Some(table), new.next()]).flatten().collect()
+}
+
+/// Whether the last order will not do either, after the errors of all but that: falling geometrically, they fall by the square of
+/// what they just fell by.
+fn is_in_vain(errors: &[f64]) -> bool {
+    let [.., before, last] = errors else { return false };
+    let fell = last / before;
+    errors.len() + 1 == ORDERS.len() && last * fell * fell > FASTER * MOST_ERROR
 }
 
 #[cfg(test)]

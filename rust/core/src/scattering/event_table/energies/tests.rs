@@ -67,3 +67,29 @@ fn what_is_not_smooth_has_none() {
         assert_eq!(built(&deflector(name, &numbers), range, b_max, 2), None, "{name}");
     }
 }
+
+/// Of 3, 5 and 9 tables of whom the rule of geometric convergence says 4e-7 for the last order, and 4e-2.
+#[test]
+fn the_last_order_is_tried_where_there_is_hope() {
+    assert!(!is_in_vain(&[1e-1, 1e-2]), "too soon to tell");
+    assert!(!is_in_vain(&[1e-1, 4e-3, 4e-5]));
+    assert!(is_in_vain(&[2e-1, 1e-1, 6e-2]));
+    // What is no number, or has grown, is no hope of less.
+    assert!(is_in_vain(&[1e-3, 1e-3, 1.0]));
+}
+
+/// Energies of an order are those of the order before and new ones between: each table is the one at its energy.
+#[test]
+fn tables_of_the_order_before_are_among_those_of_the_next() {
+    let deflector = deflector("lennard_jones", &[1.0, 1.0]);
+    let energies = built(&deflector, [2.0, 2.6], 3.0, 2).unwrap();
+    assert!(energies.tables.len() > ORDERS[0], "{}", energies.tables.len());
+    for (share, _, table) in &energies.tables {
+        let energy = (2.0 / share).clamp(2.0, 2.6);
+        let anew = EventTable::build(&deflector, energy, 3.0, 1, &mut Ticker::quiet(&Control::new(0)));
+        // The energy is an ulp off, and so are angles beside it.
+        let off =
+            |part: f64| (table.angle(part).unwrap() - anew.as_ref().unwrap().angle(part).unwrap()).abs();
+        assert!([0.1, 0.4, 0.7].into_iter().all(|part| off(part) < 1e-7));
+    }
+}
