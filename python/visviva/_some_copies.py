@@ -11,22 +11,21 @@ from reprlib import repr as shortened
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from visviva import _core
 
 __all__ = ["One", "Some", "each_of", "lines_of", "of_copies", "one_or_some", "rows_of"]
 
-One: TypeAlias = "int | np.integer[Any]"
+One: TypeAlias = int | np.integer[Any]
 """An index that means one copy."""
 
-Some: TypeAlias = "slice | list[int] | list[bool] | range | NDArray[np.integer[Any]] | NDArray[np.bool]"
+Some: TypeAlias = slice | list[int] | list[bool] | range | NDArray[np.integer[Any]] | NDArray[np.bool]
 """An index that means several, which are an ensemble."""
 
 _EXPECTED = "expected a whole number, a slice, a list or array of whole numbers, or a mask"

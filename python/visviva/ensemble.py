@@ -60,8 +60,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     body_forces : tuple of tuple
         Those on rigid bodies of each copy.
 
-    Indexing with a number gives the `Scene` of one copy. A slice, a list or array of numbers, or a mask (B,) gives the
-    ensemble of these copies, which may be taken more than once.
+    Indexing with a number gives the `Scene` of one copy. A slice, a list or array of numbers, or a mask of shape (B,)
+    gives the ensemble of these copies, which may be taken more than once.
 
     Examples
     --------
@@ -70,8 +70,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     >>> copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None])
     >>> len(copies), copies.position.shape, copies[1] == scene
     (2, (2, 2, 3), False)
-    >>> copies[[1, 0, 1]].mass.shape, len(copies[copies.velocity[:, 1, 1] > 1.6])
-    ((3, 2), 1)
+    >>> copies[[1, 0, 1]].mass.shape, copies[np.array([False, True])][0] == copies[1]
+    ((3, 2), True)
     """
 
     __slots__ = ("_inertia", "_keywords", "body_forces", "forces", "mass", "position", "radius", "scene", "velocity")

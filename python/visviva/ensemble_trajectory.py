@@ -69,8 +69,8 @@ class EnsembleTrajectory(Recorded):
     >>> out = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]).run(t=1.0)
     >>> out.position.shape, out[1].position.shape
     ((2, 2, 2, 3), (2, 2, 3))
-    >>> out[[1, 0]].position.shape, len(out[out.energy[:, 0] < -0.55])
-    ((2, 2, 2, 3), 1)
+    >>> out[[1, 0]].energy[0, 1] == out.energy[1, 1], len(out[out.status == vv.Status.OK])
+    (np.True_, 2)
     """
 
     __slots__ = ("_lines", "ensemble")
@@ -126,6 +126,10 @@ class EnsembleTrajectory(Recorded):
             order = np.argsort(found["member"], kind="stable")
             self._lines[table] = order, np.searchsorted(found["member"][order], np.arange(len(self) + 1))
         order, begin = self._lines[table]
+        if isinstance(rows, slice) and rows.step in (None, 1):
+            first, last, _ = rows.indices(len(self))
+            chosen = order[begin[first] : begin[max(first, last)]]
+            return {name: array[chosen] for name, array in found.items()} | {"member": found["member"][chosen] - first}
         copies, lengths = np.arange(len(self))[rows], np.diff(begin)
         chosen = order[lines_of(lengths, copies)]
         number = np.repeat(np.arange(len(copies), dtype=np.int64), lengths[copies])

@@ -44,8 +44,8 @@ class GeneralizedEnsemble(Shown):
     system : GeneralizedSystem
         Whose copies they are.
 
-    Indexing with a number gives the system of one copy. A slice, a list or array of numbers, or a mask (B,) gives the
-    ensemble of these copies, which may be taken more than once.
+    Indexing with a number gives the system of one copy. A slice, a list or array of numbers, or a mask of shape (B,)
+    gives the ensemble of these copies, which may be taken more than once.
 
     Examples
     --------
