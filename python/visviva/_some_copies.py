@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["One", "Some", "each_of", "lines_of", "of_copies", "one_or_some", "rows_of"]
 
-One: TypeAlias = int | np.integer[Any]
+One: TypeAlias = int | np.integer
 """An index that means one copy."""
 
-Some: TypeAlias = slice | list[int] | list[bool] | range | NDArray[np.integer[Any]] | NDArray[np.bool]
+Some: TypeAlias = slice | list[int] | list[bool] | range | NDArray[np.integer] | NDArray[np.bool]
 """An index that means several, which are an ensemble."""
 
 _EXPECTED = "expected a whole number, a slice, a list or array of whole numbers, or a mask"
