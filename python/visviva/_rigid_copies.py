@@ -197,7 +197,7 @@ def core_rigid_of_copies(
     return core_rigid
 
 
-def turning_of_copies(keywords: _core._Scene, chosen: int | slice) -> dict[str, Any]:
+def turning_of_copies(keywords: _core._Scene, chosen: int | slice | NDArray[np.intp]) -> dict[str, Any]:
     """Orientations and angular velocities of some copies; nothing without rigid bodies."""
     rigid = keywords["rigid"]
     if rigid is None:

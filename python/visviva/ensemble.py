@@ -19,8 +19,9 @@ from visviva._rigid_copies import (
     inertia_of_one,
     turning_of_copies,
 )
+from visviva._some_copies import each_of, one_or_some, rows_of
 from visviva._text import count
-from visviva.ensemble_trajectory import EnsembleTrajectory, one_or_some, rows_of
+from visviva.ensemble_trajectory import EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.request import StreamRequest, asked_by
 from visviva.runnable import Runnable
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     from visviva import _core
     from visviva._body_force import BodyForce
+    from visviva._some_copies import One, Some
     from visviva.forces import Force
     from visviva.request import RunRequest
     from visviva.scene import Scene
@@ -58,7 +60,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     body_forces : tuple of tuple
         Those on rigid bodies of each copy.
 
-    Indexing with a number gives the `Scene` of one copy, with a slice a smaller ensemble.
+    Indexing with a number gives the `Scene` of one copy. A slice, a list or array of numbers, or a mask of shape (B,)
+    gives the ensemble of these copies, which may be taken more than once.
 
     Examples
     --------
@@ -67,6 +70,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     >>> copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None])
     >>> len(copies), copies.position.shape, copies[1] == scene
     (2, (2, 2, 3), False)
+    >>> copies[[1, 0, 1]].mass.shape, copies[np.array([False, True])][0] == copies[1]
+    ((3, 2), True)
     """
 
     __slots__ = ("_inertia", "_keywords", "body_forces", "forces", "mass", "position", "radius", "scene", "velocity")
@@ -193,19 +198,19 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         return len(self.mass)
 
     @overload
-    def __getitem__(self, index: int) -> Scene: ...
+    def __getitem__(self, index: One) -> Scene: ...
     @overload
-    def __getitem__(self, index: slice) -> EnsembleScene: ...
-    def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
+    def __getitem__(self, index: Some) -> EnsembleScene: ...
+    def __getitem__(self, index: One | Some) -> Scene | EnsembleScene:
         chosen = one_or_some(index, len(self))
         state = {name: getattr(self, name)[chosen] for name in ("mass", "position", "velocity", "radius")}
         own = turning_of_copies(self._keywords, chosen)
         inertia: dict[str, Any] = {name: each[chosen] for name, each in self._inertia.items()}
         continuation = continuation_of_copies(self._keywords["continuation"], rows_of(chosen))
-        if isinstance(chosen, slice):
+        if not isinstance(chosen, int):
             if self._keywords["radius"] is None:
                 del state["radius"]
-            acting = Acting(self.forces[chosen], self.body_forces[chosen])
+            acting = Acting(each_of(self.forces, chosen), each_of(self.body_forces, chosen))
             return with_continuation(EnsembleScene._of(self.scene, acting, **state, **own, **inertia), continuation)
         bodies = self.scene.particles._in_state(**{name: read_only(array) for name, array in state.items()})
         told = self._keywords["forces"]

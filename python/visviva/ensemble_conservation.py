@@ -14,9 +14,9 @@ import numpy as np
 from visviva._endings import interrupted_and_failed
 from visviva._html import Record, Sheet, Shown, as_text
 from visviva._keywords import known_keywords
+from visviva._some_copies import each_of, one_or_some
 from visviva._text import count
 from visviva.conservation import ROWS, Conservation, Drift, conservation_of, has_rows, row_of
-from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._some_copies import One, Some
     from visviva.ensemble_trajectory import EnsembleTrajectory
 
 __all__ = ["DriftOfCopies", "EnsembleConservation"]
@@ -105,8 +106,8 @@ class EnsembleConservation(Shown):
     Notes
     -----
     Indexed like a run: ``kept[i]`` is the `Conservation` of copy i (all NaN where that failed before its first row), a
-    slice that of some copies, and ``kept["energy"]`` a row by the name that is printed; ``kept[i]["energy"].max`` and
-    ``kept["energy"].max[i]`` are one number.
+    slice, a list or array of numbers, or a mask (B,) that of some copies, and ``kept["energy"]`` a row by the name that
+    is printed; ``kept[i]["energy"].max`` and ``kept["energy"].max[i]`` are one number.
 
     References
     ----------
@@ -140,21 +141,24 @@ class EnsembleConservation(Shown):
         return iter(self._copies)
 
     @overload
-    def __getitem__(self, index: int) -> Conservation: ...
+    def __getitem__(self, index: One) -> Conservation: ...
     @overload
-    def __getitem__(self, index: slice) -> EnsembleConservation: ...
+    def __getitem__(self, index: Some) -> EnsembleConservation: ...
     @overload
     def __getitem__(self, index: str) -> DriftOfCopies: ...
-    def __getitem__(self, index: int | slice | str) -> Conservation | EnsembleConservation | DriftOfCopies:
+    def __getitem__(self, index: One | Some | str) -> Conservation | EnsembleConservation | DriftOfCopies:
         if isinstance(index, str):
             drift: DriftOfCopies = getattr(self, row_of(index))
             return drift
         chosen = one_or_some(index, len(self))
-        if isinstance(chosen, slice):
-            if not self._copies[chosen]:
-                raise InvalidInput("index", f"expected a slice of at least one of {len(self)} copies, got {index}")
-            return _of_copies(self._copies[chosen], self.status[chosen])
-        return self._copies[chosen]
+        if isinstance(chosen, int):
+            return self._copies[chosen]
+        copies = each_of(self._copies, chosen)
+        if not copies:
+            raise InvalidInput("index", f"expected at least one of {len(self)} copies, got none")
+        status = self.status[chosen]
+        status.setflags(write=False)
+        return _of_copies(copies, status)
 
     @property
     def rows(self) -> tuple[DriftOfCopies, ...]:

@@ -6,7 +6,6 @@ A copy that fails has a status and NaN from there on; the others do not notice.
 from __future__ import annotations
 
 from dataclasses import replace
-from operator import index as whole
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -15,6 +14,7 @@ from visviva._continuation import continuation_after, with_continuation
 from visviva._endings import endings
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
+from visviva._some_copies import lines_of, one_or_some, rows_of
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.recorded import Recorded
@@ -30,13 +30,14 @@ if TYPE_CHECKING:
 
     from visviva._exported import Columns
     from visviva._html import Sheet
+    from visviva._some_copies import One, Some
     from visviva.body import BodyMotion
     from visviva.ensemble import EnsembleScene
     from visviva.ensemble_conservation import EnsembleConservation
     from visviva.scene import Scene
     from visviva.typing import ColumnName
 
-__all__ = ["EnsembleTrajectory", "one_or_some", "rows_of"]
+__all__ = ["EnsembleTrajectory"]
 
 
 @known_keywords
@@ -58,7 +59,8 @@ class EnsembleTrajectory(Recorded):
         Totals over the copies; `per_trajectory` has them one by one.
 
     Every array is read-only; ``out.position.copy()`` is yours. Indexing with a number gives the `Trajectory` of one
-    copy, with a slice those of a smaller ensemble, with the name of a body its motion in all copies.
+    copy, with the name of a body its motion in all copies. A slice, a list or array of numbers, or a mask (B,) gives
+    the run of these copies: they are numbered anew, also in events and collisions, and totals are theirs.
 
     Examples
     --------
@@ -67,6 +69,8 @@ class EnsembleTrajectory(Recorded):
     >>> out = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]).run(t=1.0)
     >>> out.position.shape, out[1].position.shape
     ((2, 2, 2, 3), (2, 2, 3))
+    >>> out[[1, 0]].energy[0, 1] == out.energy[1, 1], len(out[out.status == vv.Status.OK])
+    (np.True_, 2)
     """
 
     __slots__ = ("_lines", "ensemble")
@@ -89,12 +93,12 @@ class EnsembleTrajectory(Recorded):
         return len(self.ensemble)
 
     @overload
-    def __getitem__(self, index: int) -> Trajectory: ...
+    def __getitem__(self, index: One) -> Trajectory: ...
     @overload
-    def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
+    def __getitem__(self, index: Some) -> EnsembleTrajectory: ...
     @overload
     def __getitem__(self, index: str) -> BodyMotion: ...
-    def __getitem__(self, index: int | slice | str) -> Trajectory | EnsembleTrajectory | BodyMotion:
+    def __getitem__(self, index: One | Some | str) -> Trajectory | EnsembleTrajectory | BodyMotion:
         if isinstance(index, str):
             return self.body(index)
         chosen = one_or_some(index, len(self))
@@ -105,16 +109,16 @@ class EnsembleTrajectory(Recorded):
         result["status"] = self.status[rows]
         for table in ("events", "collisions"):
             if table in self._result:
-                result[table] = self._rows_of_copies(table, range(len(self))[rows])
+                result[table] = self._rows_of_copies(table, rows)
         own = ((name, each) for name, each in result["per_trajectory"].items() if name in result["stats"])
         # The sum of one number would take longer than all the rest.
         totals = {name: each.item() if len(each) == 1 else int(each.sum()) for name, each in own}
         result["stats"] = {**result["stats"], **totals}
-        if isinstance(chosen, slice):
-            return EnsembleTrajectory(self.ensemble[chosen], result)
-        return Trajectory(self.ensemble[chosen], result)
+        if isinstance(chosen, int):
+            return Trajectory(self.ensemble[chosen], result)
+        return EnsembleTrajectory(self.ensemble[chosen], result)
 
-    def _rows_of_copies(self, table: str, copies: range) -> dict[str, NDArray[Any]]:
+    def _rows_of_copies(self, table: str, rows: slice | NDArray[np.intp]) -> dict[str, NDArray[Any]]:
         """The lines of some copies in a table, where they are numbered anew."""
         found = self._result[table]
         if table not in self._lines:
@@ -122,12 +126,13 @@ class EnsembleTrajectory(Recorded):
             order = np.argsort(found["member"], kind="stable")
             self._lines[table] = order, np.searchsorted(found["member"][order], np.arange(len(self) + 1))
         order, begin = self._lines[table]
-        if copies.step == 1:
-            chosen, first = order[begin[copies.start] : begin[copies.stop]], copies.start
+        if isinstance(rows, slice) and rows.step in (None, 1):
+            first, last, _ = rows.indices(len(self))
+            chosen = order[begin[first] : begin[max(first, last)]]
             return {name: array[chosen] for name, array in found.items()} | {"member": found["member"][chosen] - first}
-        lines = [order[begin[copy] : begin[copy + 1]] for copy in copies]
-        chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])
-        number = np.repeat(np.arange(len(lines), dtype=np.int64), [len(line) for line in lines])
+        copies, lengths = np.arange(len(self))[rows], np.diff(begin)
+        chosen = order[lines_of(lengths, copies)]
+        number = np.repeat(np.arange(len(copies), dtype=np.int64), lengths[copies])
         return {name: array[chosen] for name, array in found.items()} | {"member": number}
 
     def _elsewhere(self, name: str) -> str:
@@ -318,24 +323,6 @@ class EnsembleTrajectory(Recorded):
         from visviva._ensemble_plot import plot_ensemble
 
         return plot_ensemble(self, column, body, component, kind, ax)
-
-
-def one_or_some(index: Any, count: int) -> int | slice:
-    """An index as it came if it is a slice, and else as a whole number from 0."""
-    if isinstance(index, slice):
-        return index
-    try:
-        number = whole(index)
-    except TypeError:
-        raise InvalidInput("index", f"expected a whole number or a slice, got {index!r}") from None
-    if not -count <= number < count:
-        raise IndexError(f"copy {number} of {count}")
-    return number % count
-
-
-def rows_of(chosen: int | slice) -> slice:
-    """The rows of what `one_or_some` gave."""
-    return chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
 
 
 def __dir__() -> list[str]:

@@ -119,8 +119,8 @@ type("Drag", (vv.forces.Force,), {})                | Force       | got Drag: th
 type("Well", (vv.potentials.Potential,), {})        | Potential   | got Well: the core knows its own only; .*CentralField
 type("Mine", (vv.potentials.Yukawa,), {})           | Yukawa      | got Mine
 vv.Scene(particles=P([1], [[0, 0, 0]]), forces=[3]) | forces      | got an int
-copies["first"]                                     | index       | expected a whole number or a slice, got 'first'
-copies.run(1)[1.0]                                  | index       | expected a whole number or a slice, got 1.0
+copies["first"]                                     | index       | expected a whole number, a slice, a list or array of whole numbers, or a mask, got 'first'
+copies.run(1)[1.0]                                  | index       | expected a whole number, a slice, a list or array of whole numbers, or a mask, got 1.0
 copies[2:2]                                         | position    | at least one copy
 scene.run(1).save(None)                             | path        | expected the path of a file, got NoneType
 vv.load(None)                                       | path        | expected the path of a file, got NoneType

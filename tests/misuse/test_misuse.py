@@ -71,7 +71,7 @@ OTHERS: dict[str, tuple[Callable[[], Any], str]] = {
     "collisions of a wrong kind": (lambda: wrong_calls.SCENE.run(1.0, collisions="bang"), "collisions"),  # type: ignore[arg-type]
     "a copy": (lambda: wrong_results.SWINGS["x"], "index"),  # type: ignore[index]
     "a motion of a copy": (lambda: wrong_results.SWINGS.run(t=1.0)[0.5], "index"),  # type: ignore[index]
-    "several copies": (lambda: wrong_results.SWINGS[0:2], "index"),  # type: ignore[misc]
+    "several copies": (lambda: wrong_results.SWINGS[[0.5]], "index"),  # type: ignore[list-item]
     "lines of events": (
         lambda: wrong_calls.PENDULUM.run(t=1.0, events=["theta"]).events[[0.5]],  # type: ignore[index]
         "index",

@@ -55,6 +55,13 @@ class StateColumns:
                 f"{type(self).__name__!r} object has no attribute {name!r}{advice}", name=name, obj=self
             )
 
+    def __setstate__(self, state: tuple[None, dict[str, Any]]) -> None:
+        # Arrays that were pickled or copied would be writable.
+        for name, value in state[1].items():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+            setattr(self, name, value)
+
     def _elsewhere(self, name: str) -> str:
         if name in self._whose.coordinates:
             return f"; it is out[{name!r}]"

@@ -65,7 +65,7 @@ def run_apart(
     except InvalidInput:
         return None
     if message:
-        reached = ensemble._first(bounds[len(home)]) if home else None
+        reached = ensemble[: bounds[len(home)]] if home else None
         done = None if reached is None else GeneralizedEnsembleTrajectory(reached, _joined(home), asked)
         raise Interrupted(message, done)
     return _joined(home)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
@@ -11,10 +11,11 @@ from visviva._arrays import float_array
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
+from visviva._some_copies import one_or_some
 from visviva._text import count
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._consistency import projected, wants_projection
-from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, member_index
+from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
 from visviva.generalized._resolved import warn_if_unresolved, warn_of_coarse_times
 from visviva.generalized._runs import RTOL
 from visviva.generalized._source import _label
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._some_copies import One, Some
     from visviva.generalized._system import GeneralizedSystem
     from visviva.integrators import Method
     from visviva.typing import Executor, GeneralizedEvent, GeneralizedMethodName, Progress
@@ -42,11 +44,15 @@ class GeneralizedEnsemble(Shown):
     system : GeneralizedSystem
         Whose copies they are.
 
+    Indexing with a number gives the system of one copy. A slice, a list or array of numbers, or a mask of shape (B,)
+    gives the ensemble of these copies, which may be taken more than once.
+
     Examples
     --------
     >>> import visviva as vv
-    >>> len(vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]))
-    2
+    >>> many = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]])
+    >>> len(many), many[1].position, len(many[[1, 0, 1]])
+    (2, array([0.2]), 3)
     """
 
     __slots__ = ("_parameters", "_states", "system")
@@ -115,17 +121,17 @@ class GeneralizedEnsemble(Shown):
     def __len__(self) -> int:
         return len(self._states)
 
-    def _first(self, number: int) -> GeneralizedEnsemble:
-        """So many of the copies."""
-        n, states = len(self.system.coordinates), self._states[:number]
-        own = dict(zip(self.system.parameters, self._parameters[:number].T, strict=True))
+    @overload
+    def __getitem__(self, member: One) -> GeneralizedSystem: ...
+    @overload
+    def __getitem__(self, member: Some) -> GeneralizedEnsemble: ...
+    def __getitem__(self, member: One | Some) -> GeneralizedSystem | GeneralizedEnsemble:
+        n, chosen = len(self.system.coordinates), one_or_some(member, len(self))
+        states = self._states[chosen]
+        own = dict(zip(self.system.parameters, self._parameters[chosen].T, strict=True))
+        if isinstance(chosen, int):
+            return self.system._at(states[:n], states[n:], own)
         return GeneralizedEnsemble(self.system, states[:, :n], states[:, n:], own)
-
-    def __getitem__(self, member: int) -> GeneralizedSystem:
-        n, member = len(self.system.coordinates), member_index(member, len(self))
-        state = self._states[member]
-        values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
-        return self.system._at(state[:n], state[n:], values)
 
     def _beyond_domain(self) -> list[int]:
         """Give copies with numbers for rates at the start, but none for the energy or a momentum: no status tells."""

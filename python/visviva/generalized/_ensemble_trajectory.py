@@ -15,11 +15,11 @@ from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
+from visviva._some_copies import one_or_some
 from visviva._text import count
-from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import InvalidInput
 from visviva.generalized._columns import StateColumns, exported
-from visviva.generalized._rows import rows_of_copies
+from visviva.generalized._rows import result_of_copies, rows_of_copies
 from visviva.generalized._saved import Saved
 from visviva.generalized._stats import GeneralizedStats
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
@@ -33,19 +33,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from visviva._some_copies import One, Some
     from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["GeneralizedEnsembleTrajectory", "member_index"]
-
-
-def member_index(member: object, count: int) -> int:
-    """Give the place of one copy, from 0."""
-    chosen = one_or_some(member, count)
-    if isinstance(chosen, slice):
-        raise InvalidInput("index", "expected the number of a copy, got a slice; take several one by one")
-    return chosen
+__all__ = ["GeneralizedEnsembleTrajectory"]
 
 
 @known_keywords
@@ -64,7 +57,9 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     status : ndarray of Status, shape (B,)
     steps, evaluations : ndarray of int, shape (B,)
 
-    ``out[i]`` is the trajectory of one copy, ``out[name]`` a coordinate of all of them, shape (B, T).
+    ``out[i]`` is the trajectory of one copy, ``out[name]`` a coordinate of all of them, shape (B, T). A slice, a list
+    or array of numbers, or a mask (B,) gives the run of these copies: they are numbered anew, also in events, and
+    totals are theirs.
 
     Examples
     --------
@@ -72,6 +67,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
     >>> out.position.shape, out[1].position.shape, out["theta"].shape
     ((2, 2, 1), (2, 1), (2, 2))
+    >>> out[[1, 0]].position.shape, len(out[out.energy[:, 0] > -9.7])
+    ((2, 2, 1), 1)
     """
 
     __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
@@ -119,15 +116,22 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumn
     @overload
     def __getitem__(self, member: str) -> NDArray[np.float64]: ...
     @overload
-    def __getitem__(self, member: int) -> GeneralizedTrajectory: ...
-    def __getitem__(self, member: int | str) -> GeneralizedTrajectory | NDArray[np.float64]:
+    def __getitem__(self, member: One) -> GeneralizedTrajectory: ...
+    @overload
+    def __getitem__(self, member: Some) -> GeneralizedEnsembleTrajectory: ...
+    def __getitem__(
+        self, member: One | Some | str
+    ) -> GeneralizedTrajectory | GeneralizedEnsembleTrajectory | NDArray[np.float64]:
         if isinstance(member, str):
             coordinates = self.ensemble.system.coordinates
             if member not in coordinates:
                 raise self._no_coordinate(member)
             return self.position[..., coordinates.index(member)]
-        member = member_index(member, len(self))
-        return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
+        chosen = one_or_some(member, len(self))
+        if isinstance(chosen, int):
+            return GeneralizedTrajectory(self.ensemble[chosen], self._result, self._asked, chosen)
+        part = result_of_copies(self._result, np.arange(len(self))[chosen])
+        return GeneralizedEnsembleTrajectory(self.ensemble[chosen], part, self._asked)
 
     def _elsewhere(self, name: str) -> str:
         one = hasattr(GeneralizedTrajectory, name) or name == "method"
