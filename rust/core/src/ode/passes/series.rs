@@ -161,7 +161,7 @@ impl<S: Element> Sum<'_, S> {
                 }
             )+};
         }
-        groups!(3 2 1);
+        groups!(6 3 2 1);
     }
 }
 
@@ -178,24 +178,14 @@ impl<V: Real> Polynomials<'_, V> {
     #[inline(always)]
     fn increments<const G: usize>(&self, start: usize, rest: &[V]) -> [(V, V); G] {
         let Self { blocks, len, highest, x, factor } = *self;
-        // Of even orders and of odd ones, which do not wait for each other.
-        let (mut tails, mut odd, x2) = ([V::zero(); G], [V::zero(); G], x * x);
+        let mut tails = [V::zero(); G];
         let mut order = highest;
-        if order.is_multiple_of(2) {
-            tails.copy_from_slice(&blocks[order * len + start..][..G]);
-            order -= 1;
-        }
         while order > 1 {
             let block = &blocks[order * len + start..][..G];
-            let before = &blocks[(order - 1) * len + start..][..G];
             for g in 0..G {
-                odd[g] = odd[g].multiply_add(x2, block[g]);
-                tails[g] = tails[g].multiply_add(x2, before[g]);
+                tails[g] = if order == highest { block[g] } else { tails[g].multiply_add(x, block[g]) };
             }
-            order -= 2;
-        }
-        for g in 0..G {
-            tails[g] = odd[g].multiply_add(x, tails[g]);
+            order -= 1;
         }
         let mut increments = [(V::zero(), V::zero()); G];
         let first = &blocks[len + start..][..G];
