@@ -255,7 +255,7 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         self.coefficient_of_series(n, jet, a, ticker)
     }
 
-    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+    fn smooth_until(&self, jet: &Jet<S>, h: &S) -> Option<S> {
         self.series_smooth_until(jet, h)
     }
 

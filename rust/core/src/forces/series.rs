@@ -29,7 +29,7 @@ pub trait Series<S: Element>: Send {
     ) -> Result<()>;
 
     /// As [`System::smooth_until`](crate::ode::system::System::smooth_until), of this force.
-    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+    fn smooth_until(&self, jet: &Jet<S>, h: &S) -> Option<S> {
         let _ = (jet, h);
         None
     }
@@ -125,9 +125,14 @@ impl<S: Element> Dynamics<S> {
     }
 
     /// The shortest of the steps that the forces allow, if any limits them.
-    pub(super) fn series_smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
-        let forces = self.series.iter().flat_map(|series| &series.forces);
-        forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
+    pub(super) fn series_smooth_until(&self, jet: &Jet<S>, h: &S) -> Option<S> {
+        let mut until = None;
+        for force in self.series.iter().flat_map(|series| &series.forces) {
+            if let Some(smooth) = force.smooth_until(jet, until.as_ref().unwrap_or(h)) {
+                until = Some(smooth);
+            }
+        }
+        until
     }
 }
 

@@ -144,8 +144,8 @@ impl<S: Width + Coefficient + Controlled> System<S> for Motion<S> {
         self.narrow.as_mut().map_or(Ok(None), |narrow| narrow.seen_until(step))
     }
 
-    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
-        let h = S::pass(LongestStep { form: self.form, jet, h: &h, longest_free: &self.longest_free });
+    fn smooth_until(&self, jet: &Jet<S>, h: &S) -> Option<S> {
+        let h = S::pass(LongestStep { form: self.form, jet, h, longest_free: &self.longest_free });
         let sharp = self.series.as_ref().filter(|series| series.may_turn_sharply());
         Some(sharp.map_or(h, |series| series.smooth_until(jet.order, h / jet.unit) * jet.unit))
     }

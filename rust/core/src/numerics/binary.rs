@@ -31,6 +31,9 @@ pub trait Binary: Real {
     fn inverse_root_guess(self) -> Self;
     /// Cut off after 17 bits, so that its square and its cube are exact.
     fn leading_bits(self) -> Self;
+    /// Without its significand: the power of two at most a positive number, 0 of what is below the normal ones, and infinite
+    /// where there is no number.
+    fn exponent_part(self) -> Self;
     /// The m of m·2ᵏ, 1 ≤ m < 2, for positive normal numbers.
     fn significand(self) -> Self;
     /// The k of m·2ᵏ, for positive normal numbers.
@@ -49,6 +52,10 @@ impl Binary for f64 {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         f64::from_bits(self.to_bits() & LEADING_BITS as u64)
+    }
+    #[inline(always)]
+    fn exponent_part(self) -> Self {
+        f64::from_bits(self.to_bits() & f64::INFINITY.to_bits())
     }
     #[inline(always)]
     fn significand(self) -> Self {
@@ -73,6 +80,10 @@ impl Binary for Lanes {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         self.map(f64::leading_bits)
+    }
+    #[inline(always)]
+    fn exponent_part(self) -> Self {
+        self.map(f64::exponent_part)
     }
     #[inline(always)]
     fn significand(self) -> Self {

@@ -15,7 +15,7 @@ use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::real::{Real, each};
-use super::rough_power::rough_power;
+use super::rough_power::{power_below, rough_power};
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
 const CENTRE: f64 = 1.0 + 1.0 / 131_072.0;
@@ -91,6 +91,9 @@ pub trait InverseCube: Real {
     /// `self^exponent` to four digits, for positive normal `self` and an exponent of at most 1/2 in size, and 0 of 0: for
     /// deciding.
     fn rough_power(self, exponent: f64) -> Self;
+    /// The power of two that is at most the size of a number, or the least or greatest of a wide range.
+    #[must_use]
+    fn power_below(self) -> Self;
 }
 
 macro_rules! binary {
@@ -109,6 +112,10 @@ macro_rules! binary {
             fn rough_power(self, exponent: f64) -> Self {
                 rough_power(self, exponent)
             }
+            #[inline(always)]
+            fn power_below(self) -> Self {
+                power_below(self)
+            }
         }
     )+};
 }
@@ -125,6 +132,9 @@ impl InverseCube for DoubleDouble {
     }
     fn rough_power(self, exponent: f64) -> Self {
         Self::from(self.to_f64().rough_power(exponent))
+    }
+    fn power_below(self) -> Self {
+        Self::from(self.to_f64().power_below())
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::binary::Binary;
 use super::elementary::nearest_integer;
+use super::power_of_two::power_of_two;
 
 /// log₂(1 + x) for x from 0 to 1 to 1.3e-5 (the best polynomial, by Lawson's algorithm).
 const LOGARITHM: [f64; 6] =
@@ -28,6 +29,15 @@ pub(super) fn rough_power<S: Binary>(x: S, exponent: f64) -> S {
         value = value.multiply_add(part, S::splat(coefficient));
     }
     S::select(x.less_equal(S::zero()), S::zero(), value * whole.power_of_two())
+}
+
+/// The widest range of units of time, in exponents of two: their cubes still are numbers.
+const WIDEST: i32 = 300;
+
+/// The power of two that is at most the size of a number, or the least or greatest of a wide range.
+#[inline(always)]
+pub(super) fn power_below<S: Binary>(x: S) -> S {
+    x.exponent_part().max(S::splat(power_of_two(-WIDEST))).min(S::splat(power_of_two(WIDEST)))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use super::state::State;
 use super::system::Form;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Pass, Scaled, View};
+use crate::numerics::element::{Element, Pair, Pass, Scaled, View};
 use crate::numerics::integrals::{over, raise};
 
 /// Taylor coefficients of a state in powers of the time since its expansion, in units of [`unit`](Self::unit).
@@ -66,26 +66,24 @@ impl<S: Element> Jet<S> {
         &self.v[n * self.len..][..self.len]
     }
 
-    /// Begins with a state; one of the first order is all coordinates.
-    pub fn begin(&mut self, state: &State<S>, t: S, unit: S) {
+    /// Begins with a state, from which time runs to `end`; one of the first order is all coordinates.
+    pub fn begin(&mut self, state: &State<S>, [t, end]: [&S; 2], unit: &S) {
         let len = self.len;
-        (self.t, self.unit) = (t, unit);
-        if matches!(state.form(), Form::FirstOrder(_)) {
-            let (numbers, rests) = state.all();
-            self.q[..len].copy_from_slice(numbers);
-            return self.rests[0].copy_from_slice(rests);
-        }
-        self.q[..len].copy_from_slice(state.q());
-        self.rests[0].copy_from_slice(state.q_compensation());
-        let (v, rest) = state.velocity();
-        let [_, rests] = &mut self.rests;
-        self.per_unit = S::pass(Begin {
-            v,
-            rest,
-            unit: &unit,
-            into: &mut self.v[..len],
-            rests,
-            q: &mut self.q[len..2 * len],
+        let second_order = matches!(state.form(), Form::SecondOrder(_));
+        let (places, velocities) = if second_order {
+            (state.position(), state.velocity())
+        } else {
+            (state.all(), (&[][..], &[][..]))
+        };
+        let (order_0, order_1) = self.q.split_at_mut(len);
+        let [rests, rests_of_v] = &mut self.rests;
+        S::pass(Begin {
+            from: [places, velocities],
+            times: [t, end, unit],
+            q: [order_0, &mut order_1[..velocities.0.len()]],
+            v: &mut self.v[..velocities.0.len()],
+            rests: [rests, rests_of_v],
+            of_time: [&mut self.t, &mut self.unit, &mut self.per_unit, &mut self.forward],
         });
     }
 
@@ -125,28 +123,42 @@ impl<S: Element> Pass<S> for RaiseRates<'_, S> {
 
 /// The coefficients of order 0 and 1 that a state gives.
 struct Begin<'a, S> {
-    v: &'a [S],
-    rest: &'a [S],
-    unit: &'a S,
-    into: &'a mut [S],
-    rests: &'a mut [S],
-    q: &'a mut [S],
+    /// Coordinates, and velocities if they are their rates.
+    from: [Pair<'a, S>; 2],
+    /// The time, its end and its unit.
+    times: [&'a S; 3],
+    q: [&'a mut [S]; 2],
+    v: &'a mut [S],
+    rests: [&'a mut [S]; 2],
+    /// The time, its unit, one over that, and its sign.
+    of_time: [&'a mut S; 4],
 }
 
 impl<S: Element> Pass<S> for Begin<'_, S> {
-    /// One over the unit of time.
-    type Output = S;
+    type Output = ();
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
-        let (v, rest, unit) = (V::view(self.v), V::view(self.rest), V::load(*self.unit));
-        let n = v.len();
-        let (into, rests, q) = (V::view_mut(self.into), V::view_mut(self.rests), V::view_mut(self.q));
-        let (rest, into, rests, q) = (&rest[..n], &mut into[..n], &mut rests[..n], &mut q[..n]);
-        for i in 0..n {
-            let speed = v[i] * unit;
-            (into[i], q[i], rests[i]) = (speed, speed, rest[i] * unit);
+    fn run<V: View<S>>(self) {
+        let Self { from: [places, velocities], times: [t, end, unit], .. } = self;
+        let ((y, rest), unit) = (V::pair(places), V::load(*unit));
+        let [q, next] = self.q;
+        let [rests, rests_of_v] = self.rests;
+        let (q, rests) = (&mut V::view_mut(q)[..y.len()], &mut V::view_mut(rests)[..y.len()]);
+        let rest = &rest[..y.len()];
+        for i in 0..y.len() {
+            (q[i], rests[i]) = (y[i], rest[i]);
         }
-        (V::one() / unit).store()
+        let (v, rest) = V::pair(velocities);
+        let (into, next) = (&mut V::view_mut(self.v)[..v.len()], &mut V::view_mut(next)[..v.len()]);
+        let (rest, rests) = (&rest[..v.len()], &mut V::view_mut(rests_of_v)[..v.len()]);
+        for i in 0..v.len() {
+            let speed = v[i] * unit;
+            (into[i], next[i], rests[i]) = (speed, speed, rest[i] * unit);
+        }
+        let (t, one) = (V::load(*t), V::one());
+        let forward = V::select(V::load(*end).less(t), -one, one);
+        let [of_t, of_unit, of_per_unit, of_forward] = self.of_time;
+        (*of_t, *of_unit) = (t.store(), unit.store());
+        (*of_per_unit, *of_forward) = ((one / unit).store(), forward.store());
     }
 }
 

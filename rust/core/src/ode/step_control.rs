@@ -8,7 +8,6 @@ use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
-use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::{Mask, Real};
 use crate::tiered;
 
@@ -166,10 +165,14 @@ impl<S: Real> Clock<S> {
         let (h, last) = self.next_step(running);
         let accepted = size2.less_equal(S::one()).and(running);
 
-        let factor = S::splat(SAFETY) / root(size2, rule);
         let (shrink, grow) = (S::splat(rule.limits.0), S::splat(rule.limits.1));
-        let factor = factor.max(shrink).min(grow);
-        let factor = S::select(size2.less_equal(S::zero()), grow, factor);
+        let perfect = size2.less_equal(S::zero());
+        let factor = if perfect.all() {
+            grow
+        } else {
+            let factor = (S::splat(SAFETY) / root(size2, rule)).max(shrink).min(grow);
+            S::select(perfect, grow, factor)
+        };
         let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
         let from = self.elapsed;
         let (proposed, max_step) = (h * factor, rule.max_step);
@@ -238,15 +241,6 @@ pub(super) fn root<S: Real>(square: S, rule: &Rule<S>) -> S {
     product
 }
 
-/// The widest range of units of time, in exponents of two: their cubes still are numbers.
-const WIDEST: i32 = 300;
-
-/// As [`Controlled::power_below`]: without its significand, a number is the power of two below it.
-fn power_below(value: f64) -> f64 {
-    let power = f64::from_bits(value.to_bits() & f64::INFINITY.to_bits());
-    Real::min(Real::max(power, power_of_two(-WIDEST)), power_of_two(WIDEST))
-}
-
 /// Scalars whose steps can be controlled.
 pub trait Controlled: Element {
     /// The next step of the running lanes, 0 in the others.
@@ -268,9 +262,6 @@ pub trait Controlled: Element {
     fn with_lane(self, lane: usize, number: f64) -> Self;
     /// How many there are.
     const LANES: usize;
-    /// The power of two that is at most the size of a number, or the least or greatest of a wide range.
-    #[must_use]
-    fn power_below(self) -> Self;
 }
 
 macro_rules! controlled {
@@ -284,6 +275,7 @@ macro_rules! controlled {
             fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: &Rule<Self>) -> Settled<Self> {
                 clock.settle(running, size2, rule)
             }
+            #[inline(always)]
             fn largest_lane(self) -> Self {
                 self
             }
@@ -300,9 +292,6 @@ macro_rules! controlled {
                 Self::splat(number)
             }
             const LANES: usize = 1;
-            fn power_below(self) -> Self {
-                Self::splat(power_below(self.first_lane()))
-            }
         }
     )+};
 }
@@ -339,11 +328,12 @@ impl Controlled for Lanes {
     fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: &Rule<Self>) -> Settled<Self> {
         settle_tier(clock, running, size2, rule)
     }
+    #[inline(always)]
     fn largest_lane(self) -> Self {
         let [a, b, c, d, e, f, g, h] = self.0;
-        let larger = |x: f64, y: f64| if x > y { x } else { y };
-        let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
-        Self::splat(larger(low, high))
+        let low = Real::max(Real::max(a, b), Real::max(c, d));
+        let high = Real::max(Real::max(e, f), Real::max(g, h));
+        Self::splat(Real::max(low, high))
     }
     fn sum_of_lanes(self) -> Self {
         Self::splat(self.0.iter().sum())
@@ -359,9 +349,6 @@ impl Controlled for Lanes {
         self
     }
     const LANES: usize = WIDTH;
-    fn power_below(self) -> Self {
-        self.map(power_below)
-    }
 }
 
 #[cfg(test)]

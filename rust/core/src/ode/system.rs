@@ -199,7 +199,7 @@ pub trait System<S: Element>: Send {
 
     /// The longest step up to `h` over which what it was [expanded](Self::expand) in last is as smooth as that tells, if
     /// anything in it may turn sharply.
-    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+    fn smooth_until(&self, jet: &Jet<S>, h: &S) -> Option<S> {
         let _ = (jet, h);
         None
     }

@@ -10,9 +10,9 @@ mod visited;
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{OwnInverse, Sum, Sums, nest};
-use super::passes::series_errors::InverseStep;
-use super::passes::step_by_series::{Choice, Chosen, FAR};
+use super::passes::series::{Both, Numbers, Sum, Sums, nest};
+use super::passes::series_errors::Vectors;
+use super::passes::step_by_series::{Allowed, Choice, Chosen, FAR, Shorter, Step};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -54,6 +54,8 @@ pub struct TaylorStep<S: Element> {
     too_long: S,
     /// The longest step after one that led astray.
     bound: S,
+    /// One over the step that its coefficients allow, in their unit of time.
+    inverse: S,
     /// The step tried last, as long as it was chosen, and the time at its end.
     h: S,
     chosen: S,
@@ -78,13 +80,14 @@ impl<S: Controlled> TaylorStep<S> {
         let jet = Jet::new(len, orders.highest);
         let none = S::splat(f64::INFINITY);
         let (unit, h, next, rates) = (S::one(), S::zero(), state.clone(), vec![S::zero(); len]);
-        let (chosen, reached) = (h, h);
+        let (chosen, reached, inverse) = (h, h, h);
         Self {
             orders,
             jet,
             unit,
             too_long: none,
             bound: none,
+            inverse,
             h,
             chosen,
             reached,
@@ -111,56 +114,58 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
-    /// One over the longest step that the coefficients allow, in their unit of time.
-    fn inverse_step(&self, running: S::Mask, norm: &Norm<S>) -> S {
-        let mut highest = self.jet.order;
+    /// Chooses the step, and finds where it leads; once more if it is to be no longer than what is told.
+    fn step(
+        &mut self,
+        running: S::Mask,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        norm: &Norm<S>,
+        smooth: Option<&S>,
+    ) -> Chosen<S::Mask> {
+        let first_order = self.first_order();
+        let Self { jet, unit, margin, rule, bound, too_long, inverse, chosen, h, reached, next, .. } = self;
+        let (jet, none) = (&*jet, S::splat(f64::INFINITY));
+        let longest = [smooth.unwrap_or(&none), &*bound, &rule.max_step];
+        let into = [chosen, h, reached, unit];
+        let choice = Choice { unit: &jet.unit, margin: *margin, longest, clock, running, too_long, into };
+        let sums = Self::sums(jet, state, next);
         // Where two coefficients vanish, those before them tell; a motion that ends with half of all coefficients is exact.
-        if norm.blocks.is_empty() {
-            let Jet { q, len, .. } = &self.jet;
-            let (tolerance, times, orders) = (&norm.rtol, REFINEMENTS + 1, (highest, highest / 2));
-            return S::pass(OwnInverse { blocks: q, len: *len, orders, tolerance, times, running });
+        let Jet { q, v, len, order, per_unit, .. } = jet;
+        if smooth.is_some() {
+            return S::pass(Shorter { per_unit, inverse, choice, sums });
         }
-        let Jet { q, v, len, per_unit, .. } = &self.jet;
-        // Of a system of the first order all numbers lie in one half.
-        let (v, per_unit) = if self.first_order() { (q, S::one()) } else { (v, *per_unit) };
-        let of = |highest: usize| {
-            let inverse = S::pass(InverseStep {
-                blocks: &norm.blocks,
-                inverse_tolerances: &self.inverse_tolerances,
-                coefficients: [q, v],
-                len: *len,
-                per_unit: &per_unit,
-                orders: [highest, highest - 1],
-            });
-            if norm.together { inverse.largest_lane() } else { inverse }
+        let (allowed, last) = if norm.blocks.is_empty() {
+            let (tolerance, times) = (&norm.rtol, REFINEMENTS + 1);
+            (Allowed::Numbers(Numbers { blocks: q, len: *len, tolerance, times }), order / 2)
+        } else {
+            let (blocks, inverse_tolerances) = (&norm.blocks[..], &self.inverse_tolerances[..]);
+            // Of a system of the first order all numbers lie in one half.
+            let coefficients = if first_order { [&q[..]; 2] } else { [&q[..], &v[..]] };
+            let (in_units, together) = (!first_order, norm.together);
+            let vectors = Vectors { blocks, inverse_tolerances, coefficients, len: *len, in_units, together };
+            (Allowed::Vectors(vectors), (order / 2).max(3))
         };
-        let mut inverse = of(highest);
-        let last = (highest / 2).max(3);
-        while highest - 2 > last {
-            highest -= 2;
-            let untold = inverse.less_equal(S::zero());
-            if !untold.and(running).any() {
-                break;
-            }
-            inverse = S::select(untold, of(highest), inverse);
+        S::pass(Step { allowed, orders: (*order, last), per_unit, inverse, choice, sums })
+    }
+
+    /// The sums that lead from a state of an expansion to those after it.
+    fn sums<'a>(jet: &'a Jet<S>, state: &'a State<S>, into: &'a mut State<S>) -> Both<'a, S> {
+        let Jet { q, v, order, rests, .. } = jet;
+        let order = *order;
+        if matches!(state.form(), Form::FirstOrder(_)) {
+            let all = Sum { y: state.all(), blocks: q, rest: None, highest: order, into: into.all_mut() };
+            return Both(all, None);
         }
-        inverse
+        let (of_q, of_v) = into.halves_mut();
+        let (y, rest, highest) = (state.position(), Some(&rests[1][..]), order + 1);
+        let places = Sum { y, blocks: q, rest, highest, into: of_q };
+        Both(places, Some(Sum { y: state.velocity(), blocks: v, rest: None, highest: order, into: of_v }))
     }
 
     /// The state at the time `x` after the expansion.
     fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
-        let Jet { q, v, order, rests, unit, .. } = jet;
-        let (order, times) = (*order, [&x, unit]);
-        let of = if matches!(state.form(), Form::FirstOrder(_)) {
-            (Sum { y: state.all(), blocks: q, rest: None, highest: order, into: into.all_mut() }, None)
-        } else {
-            let (of_q, of_v) = into.halves_mut();
-            let (y, rest, highest) = (state.position(), Some(&rests[1][..]), order + 1);
-            let places = Sum { y, blocks: q, rest, highest, into: of_q };
-            let y = state.velocity();
-            (places, Some(Sum { y, blocks: v, rest: None, highest: order, into: of_v }))
-        };
-        S::pass(Sums { of, times });
+        S::pass(Sums { of: Self::sums(jet, state, into), times: [&x, &jet.per_unit] });
     }
 
     /// The coefficients of one number of a block, of the orders from one on, in powers of the fraction of the step, times
@@ -227,28 +232,18 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         norm: &Norm<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<Settled<S>> {
-        self.jet.begin(state, clock.elapsed, self.unit);
-        self.jet.forward = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
-        system.expand(&mut self.jet, ticker)?;
+        self.jet.begin(state, [&clock.elapsed, &clock.end], &self.unit);
         norm.inverse_tolerances(state, &clock.elapsed, &mut self.inverse_tolerances);
-        let inverse = self.inverse_step(running, norm);
-        let least = S::zero().power_below();
-        let mut choose = |step: &mut Self, smooth: &S| {
-            let Self { unit, margin, rule, bound, too_long, chosen, h, reached, .. } = step;
-            let (units, longest) = ([&*unit, &least], [smooth, &*bound, &rule.max_step]);
-            let (margin, clock, into) = (*margin, &mut *clock, [chosen, h, reached]);
-            S::pass(Choice { inverse: &inverse, units, margin, longest, clock, running, too_long, into })
-        };
-        let mut told = choose(self, &S::splat(f64::INFINITY));
-        if let Some(smooth) = system.smooth_until(&self.jet, self.chosen) {
+        system.expand(&mut self.jet, ticker)?;
+        let mut told = self.step(running, state, clock, norm, None);
+        if let Some(smooth) = system.smooth_until(&self.jet, &self.chosen) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
             if smooth.less(self.chosen).and(running).any() {
-                told = choose(self, &smooth);
+                told = self.step(running, state, clock, norm, Some(&smooth));
             }
         }
         let Chosen { sound, again } = told;
         let taken = sound.and(again.not());
-        Self::state_at(&self.jet, state, self.h, &mut self.next);
         system.settle(&mut self.next);
         let looked_at = taken.and(running);
         let astray = if looked_at.any() {
@@ -279,14 +274,11 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
             self.too_long = S::select(outcome.accepted, none, self.too_long);
             self.bound = S::select(outcome.accepted, none, self.bound);
         }
-        let next = if taken.all() {
-            self.chosen
-        } else {
+        if !taken.all() {
             let otherwise = S::select(sound, self.chosen, clock.h);
-            S::select(again, S::splat(FAR) * self.unit, otherwise)
-        };
-        let next = next.power_below();
-        self.unit = if running.all() { next } else { S::select(running, next, self.unit) };
+            let next = S::select(again, S::splat(FAR) * self.jet.unit, otherwise).power_below();
+            self.unit = S::select(running, next, self.unit);
+        }
         Ok(outcome)
     }
 

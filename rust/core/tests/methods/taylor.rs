@@ -13,7 +13,7 @@ fn jet(make: super::Make, order: usize, unit: f64) -> Jet<DoubleDouble> {
     let Problem { state, mut dynamics, .. } = make();
     let control = Control::default();
     let mut jet = Jet::new(state.q().len(), order);
-    jet.begin(&state, DoubleDouble::from(0.0), DoubleDouble::from(unit));
+    jet.begin(&state, [0.0, 1.0].map(DoubleDouble::from).each_ref(), &DoubleDouble::from(unit));
     dynamics.expand(&mut jet, &mut Ticker::quiet(&control)).unwrap();
     jet
 }

@@ -254,10 +254,10 @@ impl Series<Lanes> for Expanded {
         Ok(())
     }
 
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: &Lanes) -> Option<Lanes> {
         let may = self.rows.first().is_some_and(Expansion::may_turn_sharply);
         may.then(|| {
-            let h = h / jet.unit;
+            let h = *h / jet.unit;
             if let Some(alone) = &self.alone {
                 return Lanes::splat(alone.smooth_until(jet.order, h.0[0])) * jet.unit;
             }

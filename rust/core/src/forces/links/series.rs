@@ -261,7 +261,7 @@ impl<L: LinkLaw> Series<Lanes> for LinkSeries<L> {
         all_orders_tier((&self.lying, &self.beside), Whole { kept: &mut self.kept, jet, a });
         Ok(())
     }
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
-        Some(Lanes::pass(Apart { kept: &self.kept, near: &self.near, jet, h: &h }))
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: &Lanes) -> Option<Lanes> {
+        Some(Lanes::pass(Apart { kept: &self.kept, near: &self.near, jet, h }))
     }
 }

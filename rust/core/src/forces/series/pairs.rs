@@ -24,6 +24,9 @@ pub(in crate::forces) trait Pairs<V> {
     const EXPONENT: f64 = -1.5;
     /// Whether a multiple of the rate of the squared distance is divided by it instead; α is then -1.
     const BY_RATE: bool = false;
+    /// Whether each order is compiled as it stands: no loop then ends where a processor does not expect it. That pays where
+    /// there are few registers.
+    const IN_FULL: bool = false;
     /// How many registers hold all pairs.
     fn registers(&self) -> usize;
     /// The softening length, squared, of those in a register; where there is no pair, it is no zero.
@@ -148,15 +151,33 @@ impl<S: Element> Whole<'_, S> {
             (V::view_mut(&mut kept.work), V::view_mut(&mut kept.inverse), V::view_mut(&mut kept.pulls));
         let (q, v, rest, a) =
             (V::view_mut(&mut jet.q), V::view_mut(&mut jet.v), V::view(&jet.rests[0]), V::view_mut(a));
-        for n in 0..jet.order {
-            let inverse_order = V::load(jet.inverse[n].0);
-            let (own, next) = q[n * len..][..2 * len].split_at(len);
-            let of_order = OfOrder { n, q: [own, next], rest, unit, inverse_order };
-            of_order.coefficient::<P, C>(pairs, rows, (&mut *work, &mut *inverse, &mut *pulls), a, true);
-            pairs.beside(n, [&q[n * len..][..len], &v[n * len..][..len]], a);
-            let (of_v, of_q) = (V::scaled(&jet.inverse[n + 1]), V::scaled(&jet.inverse[n + 2]));
-            raise(a, of_v, of_q, &mut v[(n + 1) * len..][..len], &mut q[(n + 2) * len..][..len]);
+        macro_rules! order {
+            ($n:expr) => {{
+                let n = $n;
+                let inverse_order = V::load(jet.inverse[n].0);
+                let (own, next) = q[n * len..][..2 * len].split_at(len);
+                let of_order = OfOrder { n, q: [own, next], rest, unit, inverse_order };
+                of_order.coefficient::<P, C>(pairs, rows, (&mut *work, &mut *inverse, &mut *pulls), a, true);
+                pairs.beside(n, [&q[n * len..][..len], &v[n * len..][..len]], a);
+                let (of_v, of_q) = (V::scaled(&jet.inverse[n + 1]), V::scaled(&jet.inverse[n + 2]));
+                raise(a, of_v, of_q, &mut v[(n + 1) * len..][..len], &mut q[(n + 2) * len..][..len]);
+            }};
         }
+        if !P::IN_FULL {
+            for n in 0..jet.order {
+                order!(n);
+            }
+            return;
+        }
+        macro_rules! orders {
+            ($($n:literal)+) => {$(
+                if $n == jet.order {
+                    return;
+                }
+                order!($n);
+            )+};
+        }
+        orders!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21);
     }
 }
 

@@ -105,6 +105,10 @@ impl Binary for Avx2Half {
         Self(unsafe { _mm256_and_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(LEADING_BITS))) })
     }
     #[inline(always)]
+    fn exponent_part(self) -> Self {
+        Self(unsafe { _mm256_and_pd(self.0, _mm256_set1_pd(f64::INFINITY)) })
+    }
+    #[inline(always)]
     fn significand(self) -> Self {
         unsafe {
             let bits = _mm256_and_si256(_mm256_castpd_si256(self.0), _mm256_set1_epi64x(SIGNIFICAND_BITS));
@@ -303,6 +307,10 @@ impl Binary for Avx2 {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         Self(self.0.leading_bits(), self.1.leading_bits())
+    }
+    #[inline(always)]
+    fn exponent_part(self) -> Self {
+        Self(self.0.exponent_part(), self.1.exponent_part())
     }
     #[inline(always)]
     fn significand(self) -> Self {

@@ -138,6 +138,10 @@ impl Binary for Avx512 {
         Self(unsafe { _mm512_and_pd(self.0, _mm512_castsi512_pd(_mm512_set1_epi64(LEADING_BITS))) })
     }
     #[inline(always)]
+    fn exponent_part(self) -> Self {
+        Self(unsafe { _mm512_and_pd(self.0, _mm512_set1_pd(f64::INFINITY)) })
+    }
+    #[inline(always)]
     fn significand(self) -> Self {
         unsafe {
             let bits = _mm512_and_si512(_mm512_castpd_si512(self.0), _mm512_set1_epi64(SIGNIFICAND_BITS));

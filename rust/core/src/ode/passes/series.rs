@@ -22,50 +22,32 @@ pub(super) fn largest_root<V: InverseCube>(squares: [V; 2], orders: [usize; 2]) 
 }
 
 /// One over the step that coefficients allow, in their unit of time, where each number is measured by how far it goes in the
-/// step, times a tolerance: that is found from the step, which begins as one unit, and the step from that. The last two orders
-/// tell; where they vanish, those before them.
+/// step, times a tolerance: that is found from the step, which begins as one unit, and the step from that.
 #[derive(Debug)]
-pub(in crate::ode) struct OwnInverse<'a, S: Real> {
+pub(in crate::ode) struct Numbers<'a, S> {
     /// Blocks of coefficients, from order 0 on.
     pub(in crate::ode) blocks: &'a [S],
     /// Numbers of a block.
     pub(in crate::ode) len: usize,
-    /// The highest order, and that down to which is looked.
-    pub(in crate::ode) orders: (usize, usize),
     /// The tolerance.
     pub(in crate::ode) tolerance: &'a S,
     /// How many times the step is found.
     pub(in crate::ode) times: usize,
-    /// Those who are to have a step.
-    pub(in crate::ode) running: S::Mask,
 }
 
-impl<S: Element> Pass<S> for OwnInverse<'_, S> {
-    type Output = S;
+impl<S: Element> Numbers<'_, S> {
+    /// Of the coefficients of two orders.
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
+    pub(super) fn inverse_step<V: View<S>>(&self, orders: [usize; 2]) -> V {
         let (blocks, tolerance) = (V::view(self.blocks), V::load(*self.tolerance));
-        let (mut highest, last) = self.orders;
-        let (mut told, mut untold) = (V::zero(), V::Mask::splat(true));
-        loop {
-            let orders = [highest, highest - 1];
-            let (mut step, mut inverse) = (V::one(), V::zero());
-            for _ in 0..self.times {
-                let squares = own_sizes(blocks, self.len, orders, step, tolerance);
-                inverse = largest_root(squares, orders);
-                let found = V::zero().less(inverse).and(inverse.less(V::splat(HUGE)));
-                step = V::select(found, V::one() / inverse, step);
-            }
-            told = V::select(untold, inverse, told);
-            if highest - 2 <= last {
-                return told.store();
-            }
-            highest -= 2;
-            untold = told.less_equal(V::zero());
-            if !untold.and(V::mask(self.running)).any() {
-                return told.store();
-            }
+        let (mut step, mut inverse) = (V::one(), V::zero());
+        for _ in 0..self.times {
+            let squares = own_sizes(blocks, self.len, orders, step, tolerance);
+            inverse = largest_root(squares, orders);
+            let found = V::zero().less(inverse).and(inverse.less(V::splat(HUGE)));
+            step = V::select(found, V::one() / inverse, step);
         }
+        inverse
     }
 }
 
@@ -119,11 +101,14 @@ pub(in crate::ode) struct Sum<'a, S> {
     pub(in crate::ode) into: PairMut<'a, S>,
 }
 
-/// The state so long after an expansion: sums of all its numbers, or of coordinates and then of velocities.
+/// Sums of all numbers of a state, or of coordinates and then of velocities.
+pub(in crate::ode) struct Both<'a, S>(pub(in crate::ode) Sum<'a, S>, pub(in crate::ode) Option<Sum<'a, S>>);
+
+/// The state so long after an expansion.
 pub(in crate::ode) struct Sums<'a, S> {
     /// Of what.
-    pub(in crate::ode) of: (Sum<'a, S>, Option<Sum<'a, S>>),
-    /// The time since then, and the unit of the coefficients, a power of two.
+    pub(in crate::ode) of: Both<'a, S>,
+    /// The time since then, and one over the unit of the coefficients, a power of two.
     pub(in crate::ode) times: [&'a S; 2],
 }
 
@@ -131,9 +116,16 @@ impl<S: Element> Pass<S> for Sums<'_, S> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<S>>(self) {
-        let unit = V::load(*self.times[1]);
-        let (x, per_unit) = (V::load(*self.times[0]) / unit, V::one() / unit);
-        let (mut of, mut further, mut factor) = (self.of.0, self.of.1, V::one());
+        self.of.write(V::load(*self.times[0]), V::load(*self.times[1]));
+    }
+}
+
+impl<S: Element> Both<'_, S> {
+    /// So long after an expansion; one over the unit of the coefficients is told.
+    #[inline(always)]
+    pub(super) fn write<V: View<S>>(self, time: V, per_unit: V) {
+        let x = time * per_unit;
+        let (mut of, mut further, mut factor) = (self.0, self.1, V::one());
         loop {
             of.write(x, factor);
             let Some(velocities) = further.take() else { return };

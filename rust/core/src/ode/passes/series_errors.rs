@@ -1,16 +1,17 @@
 //! How good a step by a series is: its last coefficients, and its rates at the end, beside what each vector of the state may be
 //! off.
 //!
-//! The one idea: what a vector may be off is found once for a step, and what comes of it in a pass for all blocks of vectors:
-//! a step takes as long as what it waits for, and each pass waits for its memory.
+//! The one idea: what a vector may be off is found once for a step, before its coefficients, which a processor waits for and
+//! nothing of this does; and what comes of it for all blocks of vectors at once.
 
 use super::errors::{HUGE, inverse_tolerance};
 use super::series::largest_root;
-use super::step_by_series::{Missed, slope_and_reach};
+use super::step_by_series::{Missed, slopes_and_reaches};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
 use crate::ode::norm::Block;
+use crate::ode::step_control::Controlled;
 
 /// Numbers of a state in its two halves: coordinates (or all of a system of the first order), and velocities.
 pub(in crate::ode) type Halves<'a, S> = [&'a [S]; 2];
@@ -109,38 +110,39 @@ fn largest<V: Real, const C: usize>(
     largest
 }
 
-/// One over the step that the coefficients of two orders allow, in their unit of time.
-pub(in crate::ode) struct InverseStep<'a, S> {
-    /// The vectors.
+/// One over the step that coefficients allow, in their unit of time, where vectors are measured by what they may be off.
+pub(in crate::ode) struct Vectors<'a, S> {
+    /// Where they are.
     pub(in crate::ode) blocks: &'a [Block<S>],
     /// One over what each may be off.
     pub(in crate::ode) inverse_tolerances: &'a [S],
     /// Blocks of coefficients from order 0 on, each of so many numbers.
     pub(in crate::ode) coefficients: Halves<'a, S>,
     pub(in crate::ode) len: usize,
-    /// One over the unit of time, in which the coefficients of velocities are.
-    pub(in crate::ode) per_unit: &'a S,
-    /// The two orders.
-    pub(in crate::ode) orders: [usize; 2],
+    /// Whether those of velocities are in the unit of time.
+    pub(in crate::ode) in_units: bool,
+    /// Whether the lanes share a step.
+    pub(in crate::ode) together: bool,
 }
 
-impl<S: Element> Pass<S> for InverseStep<'_, S> {
-    type Output = S;
+impl<S: Controlled> Vectors<'_, S> {
+    /// Of the coefficients of two orders; one over the unit of time is told.
     #[inline(always)]
-    fn run<V: View<S>>(self) -> S {
-        let (inverse, per_unit) = (V::view(self.inverse_tolerances), V::load(*self.per_unit));
+    pub(super) fn inverse_step<V: View<S>>(&self, orders: [usize; 2], per_unit: V) -> V {
+        let inverse = V::view(self.inverse_tolerances);
         let (mut squares, mut start) = ([V::zero(); 2], 0);
         for block in self.blocks {
             let numbers = V::view(self.coefficients[usize::from(block.velocity)]);
-            let [first, second] = self.orders;
+            let [first, second] = orders;
             let from = [first * self.len + block.start, second * self.len + block.start];
             let k = [&numbers[from[0]..], &numbers[from[1]..]];
-            let factor = if block.velocity { per_unit } else { V::one() };
+            let factor = if block.velocity && self.in_units { per_unit } else { V::one() };
             let own = &inverse[start..start + block.shape.rows];
             squares = by_components!(block.shape.components, largest::<V>(k, factor, own, squares));
             start += block.shape.rows;
         }
-        largest_root(squares, self.orders).store()
+        let inverse = largest_root(squares, orders);
+        if self.together { V::load(inverse.store().largest_lane()) } else { inverse }
     }
 }
 
@@ -169,10 +171,20 @@ impl<S: Element> Pass<S> for Astray<'_, S> {
         let x = V::load(*times[0]) / unit;
         // What a rate moves a number by in the unit of time.
         let moves = if second_order { unit * unit } else { unit };
-        for (number, rate) in rates.iter_mut().enumerate() {
-            let (slope, _) = slope_and_reach(numbers, numbers, (len, number), highest, x);
-            *rate = *rate * moves - slope;
+        let mut start = 0;
+        macro_rules! groups {
+            ($($size:literal)+) => {$(
+                while len - start >= $size {
+                    let (slopes, _) =
+                        slopes_and_reaches::<V, $size>([numbers; 2], (len, start), highest, x);
+                    for g in 0..$size {
+                        rates[start + g] = rates[start + g] * moves - slopes[g];
+                    }
+                    start += $size;
+                }
+            )+};
         }
+        groups!(6 3 2 1);
         let of_places = if second_order { x * x } else { x };
         let (mut squares, mut start) = ([V::zero(); 2], 0);
         for block in self.blocks {

@@ -4,22 +4,54 @@
 //! in memory, each would cost as much as a coefficient.
 
 use super::errors::HUGE;
+use super::series::{Both, Numbers};
+use super::series_errors::Vectors;
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::real::{Mask, Real};
-use crate::ode::step_control::Clock;
+use crate::ode::step_control::{Clock, Controlled};
 
 /// Of a step of so many units of time the last coefficients may be too small for all their digits, and for a step that other
 /// units of the scene leave as it is: the motion is expanded once more, in a unit longer by this.
 pub(in crate::ode) const FAR: f64 = 4_294_967_296.0; // 2^32
 
+/// One over the step that the coefficients of two orders allow, in their unit of time.
+pub(in crate::ode) enum Allowed<'a, S> {
+    /// By vectors.
+    Vectors(Vectors<'a, S>),
+    /// By numbers.
+    Numbers(Numbers<'a, S>),
+}
+
+impl<S: Controlled> Allowed<'_, S> {
+    /// The last two orders tell; where they vanish, those before them, down to an order.
+    #[inline(always)]
+    fn inverse<V: View<S>>(self, (mut highest, last): (usize, usize), running: V::Mask, per_unit: V) -> V {
+        let (mut told, mut untold) = (V::zero(), V::Mask::splat(true));
+        loop {
+            let orders = [highest, highest - 1];
+            let inverse = match &self {
+                Self::Vectors(vectors) => vectors.inverse_step(orders, per_unit),
+                Self::Numbers(numbers) => numbers.inverse_step(orders),
+            };
+            told = V::select(untold, inverse, told);
+            if highest - 2 <= last {
+                return told;
+            }
+            highest -= 2;
+            untold = told.less_equal(V::zero());
+            if !untold.and(running).any() {
+                return told;
+            }
+        }
+    }
+}
+
 /// The choice of a step.
 #[derive(Debug)]
 pub(in crate::ode) struct Choice<'a, S: Real> {
-    /// One over the step that the coefficients allow, in their unit of time: infinite if they are no numbers.
-    pub(in crate::ode) inverse: &'a S,
-    /// That unit, and the shortest that there is.
-    pub(in crate::ode) units: [&'a S; 2],
-    /// The share of that step that is taken.
+    /// The unit of time.
+    pub(in crate::ode) unit: &'a S,
+    /// The share of the longest step that is taken.
     pub(in crate::ode) margin: f64,
     /// What the step is not to be longer than.
     pub(in crate::ode) longest: [&'a S; 3],
@@ -29,8 +61,8 @@ pub(in crate::ode) struct Choice<'a, S: Real> {
     pub(in crate::ode) running: S::Mask,
     /// The shortest unit that was too long for this step.
     pub(in crate::ode) too_long: &'a mut S,
-    /// The step without its sign, the one that is tried, and the time at its end.
-    pub(in crate::ode) into: [&'a mut S; 3],
+    /// The step without its sign, the one that is tried, the time at its end, and, where it is taken, the next unit.
+    pub(in crate::ode) into: [&'a mut S; 4],
 }
 
 /// What is told of a step that was chosen.
@@ -42,18 +74,17 @@ pub(in crate::ode) struct Chosen<M> {
     pub(in crate::ode) again: M,
 }
 
-impl<S: Element> Pass<S> for Choice<'_, S> {
-    type Output = Chosen<S::Mask>;
+impl<S: Element> Choice<'_, S> {
+    /// From one over the step that the coefficients allow, which is infinite if they are no numbers; and the step.
     #[inline(always)]
-    fn run<V: View<S>>(self) -> Chosen<S::Mask> {
-        let (inverse, [unit, least]) =
-            (V::load(*self.inverse), [V::load(*self.units[0]), V::load(*self.units[1])]);
+    fn choose<V: View<S>>(self, inverse: V) -> (Chosen<S::Mask>, V) {
+        let unit = V::load(*self.unit);
         let mut clock = self.clock.load::<V>();
         let running = V::mask(self.running);
         let zero = V::zero();
         let sound = inverse.less(V::splat(HUGE));
         // The unit of time may be to blame; of the shortest there is, it is not.
-        let shorter = V::select(least.less(unit), unit, zero);
+        let shorter = V::select(zero.power_below().less(unit), unit, zero);
         let step = V::select(sound, V::splat(self.margin) * unit / inverse, shorter);
         // What nothing limits goes to the end.
         let span = (clock.end - clock.elapsed).abs();
@@ -67,9 +98,55 @@ impl<S: Element> Pass<S> for Choice<'_, S> {
         let again = (V::splat(FAR) * unit).less(step.min(too_long)).and(sound);
         self.clock.h = clock.h.store();
         *self.too_long = too_long.store();
-        let [of_step, of_h, of_end] = self.into;
+        let [of_step, of_h, of_end, of_next] = self.into;
         (*of_step, *of_h, *of_end) = (step.store(), h.store(), (clock.elapsed + h).store());
-        Chosen { sound: V::mask_in_memory(sound), again: V::mask_in_memory(again) }
+        *of_next = V::select(running, step.power_below(), V::load(*of_next)).store();
+        (Chosen { sound: V::mask_in_memory(sound), again: V::mask_in_memory(again) }, h)
+    }
+}
+
+/// A step as the coefficients tell it: how long it is, and where it leads.
+pub(in crate::ode) struct Step<'a, S: Real> {
+    pub(in crate::ode) allowed: Allowed<'a, S>,
+    /// The highest order of the coefficients, and that down to which is looked.
+    pub(in crate::ode) orders: (usize, usize),
+    /// One over the unit of time.
+    pub(in crate::ode) per_unit: &'a S,
+    /// What it allows, for another choice.
+    pub(in crate::ode) inverse: &'a mut S,
+    pub(in crate::ode) choice: Choice<'a, S>,
+    /// Where it leads.
+    pub(in crate::ode) sums: Both<'a, S>,
+}
+
+impl<S: Controlled> Pass<S> for Step<'_, S> {
+    type Output = Chosen<S::Mask>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Chosen<S::Mask> {
+        let (running, per_unit) = (V::mask(self.choice.running), V::load(*self.per_unit));
+        let inverse = self.allowed.inverse(self.orders, running, per_unit);
+        *self.inverse = inverse.store();
+        let (chosen, h) = self.choice.choose(inverse);
+        self.sums.write(h, per_unit);
+        chosen
+    }
+}
+
+/// The same step with another bound.
+pub(in crate::ode) struct Shorter<'a, S: Real> {
+    pub(in crate::ode) per_unit: &'a S,
+    pub(in crate::ode) inverse: &'a S,
+    pub(in crate::ode) choice: Choice<'a, S>,
+    pub(in crate::ode) sums: Both<'a, S>,
+}
+
+impl<S: Element> Pass<S> for Shorter<'_, S> {
+    type Output = Chosen<S::Mask>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Chosen<S::Mask> {
+        let (chosen, h) = self.choice.choose(V::load(*self.inverse));
+        self.sums.write(h, V::load(*self.per_unit));
+        chosen
     }
 }
 
@@ -88,24 +165,29 @@ pub(in crate::ode) struct Missed<'a, S> {
     pub(in crate::ode) second_order: bool,
 }
 
-/// Σ n bₙ xⁿ⁻¹ of one number's coefficients up to an order, and the largest |cₙ xⁿ| of others.
+/// Of `G` numbers from one on, Σ n bₙ xⁿ⁻¹ of their coefficients up to an order, and the largest |cₙ xⁿ| of others.
 #[inline(always)]
-pub(super) fn slope_and_reach<V: Real>(
-    b: &[V],
-    c: &[V],
-    (len, number): (usize, usize),
+pub(super) fn slopes_and_reaches<V: Real, const G: usize>(
+    [b, c]: [&[V]; 2],
+    (len, start): (usize, usize),
     highest: usize,
     x: V,
-) -> (V, V) {
-    let (mut slope, mut reach, mut power) = (V::zero(), V::zero(), V::one());
-    let mut place = len + number;
-    for n in 1..=highest {
-        slope = (V::splat(n as f64) * b[place]).multiply_add(power, slope);
+) -> ([V; G], [V; G]) {
+    let (mut slopes, mut reaches) = ([V::zero(); G], [V::zero(); G]);
+    let (mut n, mut power) = (V::zero(), V::one());
+    let mut place = len + start;
+    for _ in 0..highest {
+        n += V::one();
+        let weight = n * power;
         power = power * x;
-        reach = (c[place] * power).abs().max(reach);
+        let (b, c) = (&b[place..][..G], &c[place..][..G]);
+        for g in 0..G {
+            slopes[g] = b[g].multiply_add(weight, slopes[g]);
+            reaches[g] = (c[g] * power).abs().max(reaches[g]);
+        }
         place += len;
     }
-    (slope, reach)
+    (slopes, reaches)
 }
 
 /// Where numbers that miss by more than so many tolerances of how far they go in a step lead astray in it.
@@ -137,7 +219,7 @@ impl<S: Element> Pass<S> for OwnMissed<'_, S> {
         let in_a_step = (x * x).max(V::one());
         let mut most = V::zero();
         for (number, &rate) in rates.iter().enumerate() {
-            let (slope, goes) = slope_and_reach(of_rates, blocks, (len, number), highest, x);
+            let ([slope], [goes]) = slopes_and_reaches([of_rates, blocks], (len, number), highest, x);
             let mut missed = (rate * moves - slope).abs();
             if let Some(&rounding) = rounding.get(number) {
                 missed -= rounding * moves;

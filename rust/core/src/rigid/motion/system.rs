@@ -97,7 +97,7 @@ impl System<Lanes> for BodySystem {
         series.expand(jet, &mut *self.points, ticker)
     }
 
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: &Lanes) -> Option<Lanes> {
         self.series.as_ref().and_then(|series| series.smooth_until(jet, h, &*self.points))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The one idea: what is between them, `d = x_1 - x_0`, has `d'' = -(m_0 + m_1) p d`, so its coefficients follow from those
 //! of the pull `p d` without the bodies, and those of the bodies from the pulls when all are known. From order to
-//! order a processor then waits for seven operations; the sums over older orders are of two chains each and of nothing that is new.
+//! order a processor then waits for five operations; the sums over older orders are of two chains each and of nothing that is new.
 
 use super::ORDERS;
 use crate::numerics::double_double::DoubleDouble;
@@ -60,9 +60,10 @@ struct Known<V, const W: usize> {
     rows: Rows<V, W>,
     /// Coefficients of `p`.
     powers: [V; ORDERS],
-    /// Twice `d_0`, and `-3/2 p_0/s_0`.
+    /// Twice `d_0`, `-3/2 p_0/s_0`, and `d_0` times that.
     twice: [V; W],
     factor: V,
+    turned: [V; W],
     inverse: V,
     strength: V,
 }
@@ -88,7 +89,11 @@ impl Between {
         let mut powers = [V::zero(); ORDERS];
         powers[0] = unit * unit * square.inverse_cube();
         let factor = V::splat(-1.5) * powers[0] * inverse;
-        Known { rows, powers, twice, factor, inverse, strength }
+        let mut turned = [V::zero(); W];
+        for c in 0..C {
+            turned[c] = places[c] * factor;
+        }
+        Known { rows, powers, twice, factor, turned, inverse, strength }
     }
 
     /// The coefficient of order `n` of the pull.
@@ -98,7 +103,7 @@ impl Between {
         n: usize,
         known: &mut Known<V, W>,
     ) -> [V; C] {
-        let Known { rows, powers, twice, factor, inverse, strength } = known;
+        let Known { rows, powers, twice, factor, turned, inverse, strength } = known;
         let Numbers { half, newest, twice: inverses } = self.numbers[n];
         let mut pull = [V::zero(); C];
         if n > 0 {
@@ -111,19 +116,26 @@ impl Between {
             if n > 1 {
                 power = (V::from_double_double(newest) * rows[1][C]).multiply_add(powers[n - 1], power);
             }
-            power = factor.multiply_add(square, power);
-            powers[n] = power;
+            powers[n] = factor.multiply_add(square, power);
             rows[n][C] = square * *inverse;
             rows[n][C + 1] = V::splat(n as f64) * rows[n][C];
             for c in 0..C {
                 let older = if n > 1 { rows[1][c].multiply_add(powers[n - 1], sums[c]) } else { sums[c] };
-                pull[c] = rows[n][c].multiply_add(powers[0], older);
+                let older = rows[0][c].multiply_add(power, rows[n][c].multiply_add(powers[0], older));
+                // Not from the new power: the next orders wait for this.
+                pull[c] = turned[c].multiply_add(square, older);
+            }
+        } else {
+            for c in 0..C {
+                pull[c] = rows[0][c] * powers[0];
             }
         }
+        // What both pull, over (n+1)(n+2), and what that leaves out.
+        let high = *strength * V::splat(inverses.0);
+        let low =
+            strength.multiply_add(V::splat(inverses.1), strength.multiply_add(V::splat(inverses.0), -high));
         for c in 0..C {
-            pull[c] = rows[0][c].multiply_add(powers[n], pull[c]);
-            let both = *strength * pull[c];
-            rows[n + 2][c] = both.multiply_add(V::splat(inverses.0), both * V::splat(inverses.1));
+            rows[n + 2][c] = pull[c].multiply_add(high, pull[c] * low);
         }
         pull
     }
@@ -241,10 +253,15 @@ impl Along {
     /// As [`Series::expand`](crate::forces::series::Series::expand).
     pub(super) fn expand(&mut self, jet: &mut Jet<Lanes>) {
         match jet.len {
-            2 => f64::pass(Pulls::<2> { along: self, jet }),
-            _ => f64::pass(Pulls::<3> { along: self, jet }),
+            2 => {
+                f64::pass(Pulls::<2> { along: self, jet });
+                Lanes::pass(Spread::<2> { along: self, jet });
+            }
+            _ => {
+                f64::pass(Pulls::<3> { along: self, jet });
+                Lanes::pass(Spread::<3> { along: self, jet });
+            }
         }
-        Lanes::pass(Spread { along: self, jet });
     }
 }
 
@@ -292,101 +309,29 @@ impl<const C: usize> Pulls<'_, C> {
     }
 }
 
-struct Spread<'a> {
+struct Spread<'a, const C: usize> {
     along: &'a Along,
     jet: &'a mut Jet<Lanes>,
 }
 
-impl Pass<Lanes> for Spread<'_> {
+impl<const C: usize> Pass<Lanes> for Spread<'_, C> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
         let Self { along, jet } = self;
-        let (len, weights) = (jet.len, V::load(along.weights));
-        let (q, v) = (V::view_mut(&mut jet.q), V::view_mut(&mut jet.v));
-        for n in 0..jet.order {
-            let pull = &along.pulls[n];
-            let a = [V::splat(pull[0]) * weights, V::splat(pull[1]) * weights, V::splat(pull[2]) * weights];
-            let (of_v, of_q) = (V::scaled(&jet.inverse[n + 1]), V::scaled(&jet.inverse[n + 2]));
-            let (v, q) = (&mut v[(n + 1) * len..][..len], &mut q[(n + 2) * len..][..len]);
-            raise(&a[..len], of_v, of_q, v, q);
+        let (order, weights) = (jet.order, V::load(along.weights));
+        let (q, _) = V::view_mut(&mut jet.q).as_chunks_mut::<C>();
+        let (v, _) = V::view_mut(&mut jet.v).as_chunks_mut::<C>();
+        let (q, v, inverse) = (&mut q[2..order + 2], &mut v[1..=order], &jet.inverse[1..order + 2]);
+        for (n, pull) in along.pulls[..order].iter().enumerate() {
+            let mut a = [V::zero(); C];
+            for c in 0..C {
+                a[c] = V::splat(pull[c]) * weights;
+            }
+            raise(&a, V::scaled(&inverse[n]), V::scaled(&inverse[n + 1]), &mut v[n], &mut q[n]);
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{EachPair, RingPairs};
-    use super::*;
-    use crate::forces::series::Series;
-    use crate::numerics::element::Shape;
-    use crate::ode::state::State;
-    use crate::parallel::{Control, Ticker};
-
-    const ORDER: usize = 22;
-
-    /// Two bodies of the masses 0.75 and 0.125, on their way past each other.
-    fn jet<S: Element>(bodies: impl Fn([f64; 2]) -> Vec<S>, components: usize) -> Jet<S> {
-        let rows =
-            |numbers: [[f64; 2]; 3]| numbers[..components].iter().flat_map(|&row| bodies(row)).collect();
-        let q: Vec<S> = rows([[0.3, -1.1], [-0.2, 0.9], [0.05, 0.4]]);
-        let v: Vec<S> = rows([[0.2, -0.5], [0.6, -0.1], [-0.3, 0.7]]);
-        let mut jet = Jet::new(q.len(), ORDER);
-        jet.begin(&State::new(&q, &v), S::zero(), S::splat(0.25));
-        jet
-    }
-
-    fn in_lanes(row: [f64; 2]) -> Vec<Lanes> {
-        vec![Lanes([row[0], row[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])]
-    }
-
-    #[test]
-    fn between_bodies_is_as_from_body_to_body() {
-        let control = Control::new(0);
-        for (components, softening) in [(3, 0.0), (3, 0.25), (2, 0.125)] {
-            let shape = Shape { rows: 1, components };
-            let mut series = RingPairs::new(shape, &[0.75, 0.125], softening);
-            let (mut whole, mut single) = (jet(in_lanes, components), jet(in_lanes, components));
-            let mut a = vec![Lanes::zero(); components];
-            series.expand(&mut whole, &mut a, &mut Ticker::quiet(&control)).unwrap();
-            for n in 0..ORDER {
-                series.coefficient(n, &single, &mut a, true, &mut Ticker::quiet(&control)).unwrap();
-                single.raise(n, &a);
-            }
-            for n in 0..ORDER + 2 {
-                let largest =
-                    single.position(n).iter().flat_map(|row| row.0).fold(0.0, |m: f64, x| m.max(x.abs()));
-                for (one, other) in whole.position(n).iter().zip(single.position(n)) {
-                    for lane in 0..2 {
-                        // Each order adds a few roundings of its sums.
-                        let difference = (one.0[lane] - other.0[lane]).abs();
-                        assert!(difference <= 1e-13 * largest, "order {n}: {difference:e} of {largest:e}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn bodies_in_lanes_and_systems_in_lanes_have_the_same_bits() {
-        let control = Control::new(0);
-        for components in [2, 3] {
-            let mut packed = jet(in_lanes, components);
-            let mut beside = jet(|row| row.map(Lanes::splat).to_vec(), components);
-            let mut a = vec![Lanes::zero(); 2 * components];
-            let mut along = RingPairs::new(Shape { rows: 1, components }, &[0.75, 0.125], 0.125);
-            along.expand(&mut packed, &mut a, &mut Ticker::quiet(&control)).unwrap();
-            let strength = [0.75, 0.125].map(Lanes::splat).to_vec();
-            let mut each = EachPair::new(Shape { rows: 2, components }, strength, 0.125);
-            each.expand(&mut beside, &mut a, &mut Ticker::quiet(&control)).unwrap();
-            for (row, both) in [(&packed.q, &beside.q), (&packed.v, &beside.v)]
-                .iter()
-                .flat_map(|(one, other)| one.iter().zip(other.as_chunks::<2>().0))
-            {
-                for body in 0..2 {
-                    assert_eq!(both[body].0.map(f64::to_bits), [row.0[body].to_bits(); 8]);
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -91,6 +91,7 @@ impl<'a, V: View<Lanes>> Seen<'a, V> {
 }
 
 impl<V: InverseCube> Pairs<V> for Seen<'_, V> {
+    const IN_FULL: bool = true;
     #[inline(always)]
     fn registers(&self) -> usize {
         self.massive.strength.len()

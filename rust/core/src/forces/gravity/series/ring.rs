@@ -66,6 +66,7 @@ impl RingPairs {
 }
 
 impl<V: Vector8> Pairs<V> for Turns {
+    const IN_FULL: bool = true;
     #[inline(always)]
     fn registers(&self) -> usize {
         self.turns.len()

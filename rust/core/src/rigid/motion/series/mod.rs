@@ -32,7 +32,7 @@ pub(super) trait Expand: Send {
     ) -> Result<()>;
 
     /// As [`System::smooth_until`].
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes, points: &dyn System<Lanes>) -> Option<Lanes>;
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: &Lanes, points: &dyn System<Lanes>) -> Option<Lanes>;
 }
 
 /// What is known of the systems in the lanes.

@@ -138,7 +138,7 @@ impl Expand for OneBody {
         Ok(())
     }
 
-    fn smooth_until(&self, _: &Jet<Lanes>, _: Lanes, _: &dyn System<Lanes>) -> Option<Lanes> {
+    fn smooth_until(&self, _: &Jet<Lanes>, _: &Lanes, _: &dyn System<Lanes>) -> Option<Lanes> {
         None
     }
 }

@@ -242,12 +242,12 @@ impl<S: Held> Expand for Bodies<S> {
         }
     }
 
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes, points: &dyn System<Lanes>) -> Option<Lanes> {
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: &Lanes, points: &dyn System<Lanes>) -> Option<Lanes> {
         let of_points = if self.alike { None } else { points.smooth_until(&self.points, h) };
         if !self.rates.may_turn_sharply() {
             return of_points;
         }
-        let h = of_points.unwrap_or(h);
+        let h = of_points.unwrap_or(*h);
         let mut smooth = h / jet.unit;
         self.rates.smooth_until(jet.order, S::of(&smooth)).put(&mut smooth);
         Some(smooth * jet.unit)

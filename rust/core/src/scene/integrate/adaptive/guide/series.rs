@@ -68,14 +68,18 @@ impl Pass<Lanes> for Shift<'_> {
         let (blocks, into) = (V::view_mut(&mut self.into.blocks), V::view_mut(&mut self.into.rests));
         let highest = blocks.len() / numbers - 1;
         let mut division = Division { blocks: &mut *blocks, numbers, highest, x, rests, into };
+        // One by itself would wait for its products.
         let mut start = 0;
-        while numbers - start >= 3 {
+        while numbers - start >= 3 && numbers - start != 4 {
             division.all::<3>(start);
             start += 3;
         }
-        while numbers > start {
+        while numbers - start >= 2 {
+            division.all::<2>(start);
+            start += 2;
+        }
+        if numbers > start {
             division.all::<1>(start);
-            start += 1;
         }
         let mut power = V::one();
         for block in blocks.chunks_exact_mut(numbers) {
