@@ -5,7 +5,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::{Turns, Weight};
 use super::gravity::{energy, newton, series};
 use super::remaining::{OfRemaining, Remaining};
@@ -264,8 +264,7 @@ impl Beside for Charges {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        _: [V; 3],
-        _: [V; 3],
+        _: &Seen<'_, V>,
         found: &Turns<V, TURNS>,
     ) -> [V; 3] {
         let mut term = found.sum::<PLANAR, EVEN>(&self.weights);

@@ -2,7 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
@@ -190,14 +190,13 @@ impl Beside for Kernel {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        place: [V; 3],
-        _: [V; 3],
+        seen: &Seen<'_, V>,
         _: &Turns<V, TURNS>,
     ) -> [V; 3] {
         let square = V::load(self.square[0]);
         let mut term = [V::zero(); 3];
         for c in 0..if PLANAR { 2 } else { 3 } {
-            term[c] = square * (V::load(self.center[c][0]) - place[c]);
+            term[c] = square * (V::load(self.center[c][0]) - seen.place[c]);
         }
         term
     }

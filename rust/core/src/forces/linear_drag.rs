@@ -2,7 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
@@ -137,11 +137,10 @@ impl Beside for Kernel {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        _: [V; 3],
-        velocity: [V; 3],
+        seen: &Seen<'_, V>,
         _: &Turns<V, TURNS>,
     ) -> [V; 3] {
-        let rate = V::load(self.rate[0]);
+        let (rate, velocity) = (V::load(self.rate[0]), seen.velocity);
         [rate * velocity[0], rate * velocity[1], rate * velocity[2]]
     }
 }

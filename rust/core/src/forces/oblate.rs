@@ -295,7 +295,7 @@ impl Law for Flattening {
         units.take(term.constant, CONSTANT)
     }
 
-    fn numbers(term: &Oblate, source: usize, units: Units) -> [f64; NUMBERS] {
+    fn numbers(term: &Oblate, source: usize, _: f64, units: Units) -> [f64; NUMBERS] {
         let (shape, [x, y, z]) = (term.shapes[source], term.axis);
         let radius = units.take(shape.radius, [1, 0, 0]);
         let square = radius * radius;

@@ -125,7 +125,7 @@ impl ForceTerm for PostNewtonian {
     }
 }
 
-/// The correction to first order; its number is 1/c².
+/// The correction to first order; its numbers are 1/c², 4 GM and GM/c².
 #[derive(Debug)]
 struct Schwarzschild;
 
@@ -137,10 +137,11 @@ impl Law for Schwarzschild {
         units.take(term.constant, CONSTANT)
     }
 
-    fn numbers(term: &PostNewtonian, _: usize, units: Units) -> [f64; NUMBERS] {
+    fn numbers(term: &PostNewtonian, _: usize, strength: f64, units: Units) -> [f64; NUMBERS] {
         let c = units.take(term.c, [1, 0, -1]);
+        let inverse = 1.0 / c / c;
         let mut numbers = [0.0; NUMBERS];
-        numbers[0] = 1.0 / c / c;
+        [numbers[0], numbers[1], numbers[2]] = [inverse, 4.0 * strength, strength * inverse];
         numbers
     }
 
@@ -149,7 +150,7 @@ impl Law for Schwarzschild {
         let Relative { d, velocity: v, square: r2, inverse_cube: w } = *relative;
         let v2 = v[2].multiply_add(v[2], v[1].multiply_add(v[1], v[0] * v[0]));
         let product = d[2].multiply_add(v[2], d[1].multiply_add(v[1], d[0] * v[0]));
-        let four = S::splat(4.0) * of.strength;
+        let [_, four, over, ..] = of.numbers;
         // 4 GM/r − v², 1/r being r² r⁻³.
         let radial = four.multiply_add(w * r2, -v2);
         let moving = S::splat(4.0) * product;
@@ -158,7 +159,7 @@ impl Law for Schwarzschild {
             radial.multiply_add(d[1], moving * v[1]),
             radial.multiply_add(d[2], moving * v[2]),
         ];
-        Pull { factor: of.strength * of.numbers[0] * w, vector }
+        Pull { factor: over * w, vector }
     }
 }
 

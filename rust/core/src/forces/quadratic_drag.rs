@@ -2,7 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, of_body};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::remaining::{OfRemaining, Remaining};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
@@ -150,10 +150,10 @@ impl Beside for Kernel {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        _: [V; 3],
-        v: [V; 3],
+        seen: &Seen<'_, V>,
         _: &Turns<V, TURNS>,
     ) -> [V; 3] {
+        let v = seen.velocity;
         let plane = v[1].multiply_add(v[1], v[0] * v[0]);
         let square = if PLANAR { plane } else { v[2].multiply_add(v[2], plane) };
         let slowing = V::load(self.ratio[0]) * square.sqrt();

@@ -2,7 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
@@ -86,7 +86,7 @@ impl ForceTerm for RotatingFrame {
         Box::new(self.turning(context))
     }
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
-        beside(other, None, context, || self.turning(context))
+        beside(other, None, context, || OneRow::new(self.turning(context)))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let linear = Self { center: [0.0; 3], ..*self };
@@ -218,10 +218,11 @@ fn rotate<V: Vector8, const COMPONENTS: usize>(
                 place[c] = q[c * rows + row];
                 velocity[c] = v[c * rows + row];
             }
-            let term = turned::<V, COMPONENTS>(force, (block, row), place, velocity);
+            let term = turned::<V, COMPONENTS>(force, block, place, velocity);
+            let there = V::load(force.there[row]);
             for c in 0..COMPONENTS {
-                let a = &mut a[c * rows + row];
-                *a = if first { term[c] } else { *a + term[c] };
+                let (a, term) = (&mut a[c * rows + row], there * term[c]);
+                *a = if first { term } else { *a + term };
             }
         }
     }
@@ -231,7 +232,7 @@ fn rotate<V: Vector8, const COMPONENTS: usize>(
 #[inline(always)]
 fn turned<V: Vector8, const COMPONENTS: usize>(
     force: &Kernel,
-    (block, row): (usize, usize),
+    block: usize,
     place: [V; 3],
     velocity: [V; 3],
 ) -> [V; 3] {
@@ -244,31 +245,42 @@ fn turned<V: Vector8, const COMPONENTS: usize>(
     }
     let square = V::load(force.square[block]);
     let along = omega[2].multiply_add(d[2], omega[1].multiply_add(d[1], omega[0] * d[0]));
-    let there = V::load(force.there[row]);
     let mut term = [V::zero(); 3];
     for c in 0..COMPONENTS {
         let (e, f) = ((c + 1) % 3, (c + 2) % 3);
         let turning = velocity[f].multiply_subtract_from(twice[e], velocity[e] * twice[f]);
-        let outward = along.multiply_subtract_from(omega[c], square.multiply_add(d[c], turning));
-        term[c] = there * outward;
+        term[c] = along.multiply_subtract_from(omega[c], square.multiply_add(d[c], turning));
     }
     term
 }
 
-impl Beside for Kernel {
+/// Of one row: nothing turns in the lanes without a body, so that nothing is left to take out there.
+struct OneRow(Kernel);
+
+impl OneRow {
+    fn new(mut kernel: Kernel) -> Self {
+        for numbers in kernel.omega.iter_mut().chain(&mut kernel.twice).chain([&mut kernel.square]) {
+            for (number, there) in numbers.iter_mut().zip(&kernel.there) {
+                *number = *number * *there;
+            }
+        }
+        Self(kernel)
+    }
+}
+
+impl Beside for OneRow {
     const VELOCITY: bool = true;
 
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        place: [V; 3],
-        velocity: [V; 3],
+        seen: &Seen<'_, V>,
         _: &Turns<V, TURNS>,
     ) -> [V; 3] {
         if PLANAR {
-            turned::<V, 2>(self, (0, 0), place, velocity)
+            turned::<V, 2>(&self.0, 0, seen.place, seen.velocity)
         } else {
-            turned::<V, 3>(self, (0, 0), place, velocity)
+            turned::<V, 3>(&self.0, 0, seen.place, seen.velocity)
         }
     }
 }

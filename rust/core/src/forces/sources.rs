@@ -39,8 +39,8 @@ pub(super) trait Law: Send + 'static {
     /// The gravitational constant of a force, in the units of the integration.
     fn constant(term: &Self::Term, units: Units) -> f64;
 
-    /// The numbers of the source of that place in the list, in those units.
-    fn numbers(term: &Self::Term, source: usize, units: Units) -> [f64; NUMBERS];
+    /// The numbers of the source of that place in the list and of that gravitational parameter, in those units.
+    fn numbers(term: &Self::Term, source: usize, strength: f64, units: Units) -> [f64; NUMBERS];
 
     /// What the source of that place in the list gives to a body, by its gravitational parameter and its numbers.
     /// Inlined, and without closures: it is compiled for each tier.
@@ -154,14 +154,16 @@ impl<L: Law> Kernel<L> {
         });
         let sources = slots.map(|(index, slot)| {
             let place = if packed { packed_place(slot, active) } else { (slot, 0) };
-            let strength = context.per_system(|system| {
+            let parameter = |system: &System<'_>| {
                 L::constant(context.own(term, system), context.units) * system.mass[slot]
-            });
+            };
+            let strength = context.per_system(parameter);
             let numbers: Vec<Vec<Lanes>> = (0..NUMBERS)
                 .map(|number| {
-                    let of =
-                        |system: &System<'_>| L::numbers(context.own(term, system), index, context.units);
-                    context.per_system(|system| of(system)[number])
+                    context.per_system(|system| {
+                        let own = context.own(term, system);
+                        L::numbers(own, index, parameter(system), context.units)[number]
+                    })
                 })
                 .collect();
             let of = |(block, &strength): (usize, &Lanes)| -> Told {

@@ -2,7 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
-use super::gravity::beside::{Beside, beside};
+use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
 use super::remaining::{OfRemaining, Remaining};
@@ -204,8 +204,7 @@ impl Beside for Kernel {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        _: [V; 3],
-        _: [V; 3],
+        _: &Seen<'_, V>,
         _: &Turns<V, TURNS>,
     ) -> [V; 3] {
         let ratio = V::load(self.ratio[0]);

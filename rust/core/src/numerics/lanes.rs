@@ -97,6 +97,16 @@ pub trait Vector8: Real<Mask = Bits> + sealed::Sealed {
         }
         sum
     }
+    /// Of each of three, in the lanes of the mask the sum of all lanes, in the order of
+    /// [`sum_in_every_lane`](Self::sum_in_every_lane); what is given instead in the others.
+    #[inline(always)]
+    fn sums_in_lanes(mask: Bits, of: [Self; 3], others: [Self; 3]) -> [Self; 3] {
+        let mut all = others;
+        for c in 0..3 {
+            all[c] = Self::select(mask, of[c].sum_in_every_lane(), others[c]);
+        }
+        all
+    }
     /// `x0 y0 z0 x1 y1 z1 …`: eight points, coordinate after coordinate.
     fn interleave(x: Self, y: Self, z: Self) -> [Self; 3];
     /// Writes the lanes of the mask, lane `i` to the `i`-th number from `to` on.

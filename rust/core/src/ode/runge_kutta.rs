@@ -6,7 +6,7 @@
 use super::Tableau;
 use super::nystrom::Row;
 use super::passes::rates::{FEW, RateErrors, RateStep, fresh};
-use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
+use super::passes::stages::{CompensatedPositions, CompensatedRates, Point, Rates, Weighted};
 use super::passes::updates::replace;
 use super::state::State;
 use super::stepper::{Nodes, Stepper, per_call};
@@ -101,7 +101,6 @@ impl<S: Element> Stages<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let len = self.len();
-        let stages = |terms| Weighted { h, terms, k: &self.k };
         let later;
         let t = if self.needs.time {
             later = *t + *h * row.fraction;
@@ -110,22 +109,14 @@ impl<S: Element> Stages<S> {
             t
         };
         if matches!(self.form, Form::FirstOrder(_)) {
-            S::pass(Rates { out: &mut self.position, y: state.all(), stages: stages(&row.velocity) });
+            let stages = Weighted { h, terms: &row.velocity, k: &self.k };
+            S::pass(Rates { out: &mut self.position, y: state.all(), stages });
             return system.rate(t, &self.position, &mut self.k[stage * len..][..len], ticker);
         }
-        let slope = (state.v(), &row.fraction);
-        S::pass(Positions {
-            out: &mut self.position,
-            q: state.position(),
-            slope,
-            stages: stages(&row.position),
-        });
-        let velocity = if self.needs.velocities() {
-            S::pass(Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) });
-            &self.velocity
-        } else {
-            state.v()
-        };
+        let seen = self.needs.velocities();
+        let (position, velocity) = (&mut self.position[..], seen.then_some(&mut self.velocity[..]));
+        S::pass(Point { position, velocity, state, h, row, k: &self.k });
+        let velocity = if seen { &self.velocity } else { state.v() };
         system.acceleration(t, &self.position, velocity, &mut self.k[stage * len..][..len], ticker)
     }
 

@@ -10,23 +10,53 @@ use crate::error::Result;
 use crate::forces::context::Context;
 use crate::forces::{Force, ForceTerm, Phase};
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::tiered;
+
+/// How bodies are and move, each in its lane, component after component.
+pub(in crate::forces) struct Seen<'a, V> {
+    pub place: [V; 3],
+    /// If the force looks at it.
+    pub velocity: [V; 3],
+    /// Both as they lie in memory, from where a number comes into all lanes without a permutation.
+    numbers: [&'a [Lanes]; 2],
+}
+
+impl<V: Vector8> Seen<'_, V> {
+    /// Where the body of a lane is, in every lane.
+    #[inline(always)]
+    pub(in crate::forces) fn place_of(&self, lane: usize) -> [V; 3] {
+        of_body(self.numbers[0], lane)
+    }
+    /// How it moves, likewise.
+    #[inline(always)]
+    pub(in crate::forces) fn velocity_of(&self, lane: usize) -> [V; 3] {
+        of_body(self.numbers[1], lane)
+    }
+}
+
+#[inline(always)]
+fn of_body<V: Vector8>(numbers: &[Lanes], lane: usize) -> [V; 3] {
+    let mut all = [V::zero(); 3];
+    for (all, numbers) in all.iter_mut().zip(numbers) {
+        *all = V::splat(numbers.0[lane % WIDTH]);
+    }
+    all
+}
 
 /// A force on up to eight bodies of one system, all of which have mass.
 pub(in crate::forces) trait Beside: Send + 'static {
     /// Whether it looks at velocities.
     const VELOCITY: bool;
 
-    /// Its accelerations, each in the lane of the body, from places, velocities and what gravity has found between the
-    /// bodies. In the plane nobody looks at the third component. Inlined, and without closures, with all it calls: it is
+    /// Its accelerations, each in the lane of the body, from what is seen of the bodies and what gravity has found between
+    /// them. In the plane nobody looks at the third component. Inlined, and without closures, with all it calls: it is
     /// compiled for each tier.
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        place: [V; 3],
-        velocity: [V; 3],
+        seen: &Seen<'_, V>,
         found: &Turns<V, TURNS>,
     ) -> [V; 3];
 }
@@ -65,10 +95,12 @@ fn both<V: Vector8 + InverseCube, B: Beside, const PLANAR: bool, const TURNS: us
     if B::VELOCITY {
         velocity[..components].copy_from_slice(&V::view(v)[..components]);
     }
+    let numbers = [&q[..components], &v[..if B::VELOCITY { components } else { 0 }]];
+    let seen = Seen { place, velocity, numbers };
     let a = &mut V::view_mut(a)[..components];
     let found = turns::<V, PLANAR, TURNS, EVEN>(&of.ring, place);
     let gravity = found.gravity::<PLANAR, EVEN>(&of.ring);
-    let term = of.beside.term::<V, PLANAR, TURNS, EVEN>(place, velocity, &found);
+    let term = of.beside.term::<V, PLANAR, TURNS, EVEN>(&seen, &found);
     for c in 0..components {
         let sum = term[c] + gravity[c];
         a[c] = if first { sum } else { a[c] + sum };

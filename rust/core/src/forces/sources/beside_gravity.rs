@@ -2,7 +2,7 @@
 
 use super::{Kernel, Law, OfSource, Relative, Source, difference, squared};
 use crate::forces::context::Context;
-use crate::forces::gravity::beside::{Beside, beside};
+use crate::forces::gravity::beside::{Beside, Seen, beside};
 use crate::forces::gravity::ring::Turns;
 use crate::forces::{Force, ForceTerm};
 use crate::numerics::inverse_cube::InverseCube;
@@ -52,31 +52,24 @@ impl<L: Law> Beside for OneSource<L> {
     #[inline(always)]
     fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
         &self,
-        place: [V; 3],
-        speed: [V; 3],
+        seen: &Seen<'_, V>,
         found: &Turns<V, TURNS>,
     ) -> [V; 3] {
         let source = &self.source;
-        let (mut own, mut own_speed) = ([V::zero(); 3], [V::zero(); 3]);
-        for c in 0..if PLANAR { 2 } else { 3 } {
-            own[c] = place[c].permute(&source.lane);
-            if L::VELOCITY {
-                own_speed[c] = speed[c].permute(&source.lane);
-            }
+        let lane = source.place.1;
+        let d = difference(seen.place, seen.place_of(lane));
+        let mut velocity = [V::zero(); 3];
+        if L::VELOCITY {
+            velocity = difference(seen.velocity, seen.velocity_of(lane));
         }
-        let d = difference(place, own);
         let mut inverse_cube = V::zero();
         for (taken, weight) in self.turns[..TURNS].iter().zip(&found.weight) {
             inverse_cube = V::select(taken.here, weight.permute(&taken.lane), inverse_cube);
         }
-        let velocity = difference(speed, own_speed);
         let relative = Relative { d, velocity, square: squared(d), inverse_cube };
         // Where the source itself is, or nobody, r⁻³ is zero.
         let pull = self.law.pull(source.index, &OfSource::told(V::view(&source.of[0])), &relative);
-        let (mut term, reaction) = (pull.acceleration(), pull.reaction(V::load(source.shares[0])));
-        for c in 0..3 {
-            term[c] = V::select(source.itself, reaction[c].sum_in_every_lane(), term[c]);
-        }
-        term
+        let reaction = pull.reaction(V::load(source.shares[0]));
+        V::sums_in_lanes(source.itself, reaction, pull.acceleration())
     }
 }

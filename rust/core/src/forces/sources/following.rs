@@ -61,7 +61,8 @@ impl<L: WrittenLaw> Following for Leading<L> {
         let Some(own) = (own as &dyn Any).downcast_ref::<L::Term>() else { return };
         let constant = L::constant(own, units);
         for Leader { index, slot, pair, of } in &mut self.leaders {
-            let own = [constant * mass[*slot]].into_iter().chain(L::numbers(own, *index, units));
+            let strength = constant * mass[*slot];
+            let own = [strength].into_iter().chain(L::numbers(own, *index, strength, units));
             for (before, number) in of.iter_mut().zip(own) {
                 *before = Lanes::select(lanes, Lanes::splat(number), *before);
             }

@@ -97,6 +97,21 @@ impl Vector8 for Avx512 {
     fn permute(self, index: &[i64; WIDTH]) -> Self {
         Self(unsafe { _mm512_permutexvar_pd(_mm512_loadu_si512(index.as_ptr().cast()), self.0) })
     }
+    /// Of x and y side by side.
+    #[inline(always)]
+    fn sums_in_lanes(mask: Bits, [x, y, z]: [Self; 3], others: [Self; 3]) -> [Self; 3] {
+        unsafe {
+            let xy = _mm512_add_pd(_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
+            let xy = _mm512_add_pd(xy, _mm512_permutex_pd::<0b01_00_11_10>(xy));
+            let xy = _mm512_add_pd(xy, _mm512_shuffle_f64x2::<0b01_00_11_10>(xy, xy));
+            let [x, y, others_z] = others;
+            [
+                Self(_mm512_mask_movedup_pd(x.0, mask.0, xy)),
+                Self(_mm512_mask_permute_pd::<0b1111_1111>(y.0, mask.0, xy)),
+                Self::select(mask, z.sum_in_every_lane(), others_z),
+            ]
+        }
+    }
     #[inline(always)]
     fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
         // First x and y, numbered 0–7 and 8–15; then z joins in the places of the mask.

@@ -4,10 +4,11 @@ use proptest::prelude::*;
 
 /// What every tier must agree on, bit for bit.
 #[inline(always)]
-fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 19] {
+fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 22] {
     let [a, b, c] = input.map(V::load);
     let mask = a.less(b).or(b.less_equal(c).not());
     let [first, second, third] = V::interleave(a, b, c);
+    let [sum_a, sum_b, sum_c] = V::sums_in_lanes(mask, [a, b, c], [b, c, a]);
     let mut written = [Lanes([0.0; WIDTH]); 2];
     // From the second number on: nothing asks for alignment.
     // SAFETY: fifteen numbers lie there.
@@ -27,6 +28,9 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 19] {
         a.multiply_subtract_from(b, c),
         (a * a).inverse_root_guess(),
         a.leading_bits(),
+        sum_a,
+        sum_b,
+        sum_c,
         first,
         second,
         third,
@@ -37,10 +41,10 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 19] {
 }
 
 crate::tiered! {
-    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 19] = exercise;
+    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 22] = exercise;
 }
 
-fn bits(lanes: [Lanes; 19]) -> Vec<u64> {
+fn bits(lanes: [Lanes; 22]) -> Vec<u64> {
     lanes.iter().flat_map(|lane| lane.0.map(f64::to_bits)).collect()
 }
 
@@ -56,7 +60,7 @@ proptest! {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
             #[target_feature(enable = "avx2,fma")]
-            fn avx2(input: &[Lanes; 3]) -> [Lanes; 19] {
+            fn avx2(input: &[Lanes; 3]) -> [Lanes; 22] {
                 exercise::<Avx2>(input)
             }
             // SAFETY: the machine has AVX2 and FMA.

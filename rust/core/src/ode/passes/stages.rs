@@ -3,6 +3,8 @@
 use super::updates::add_compensated;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
 use crate::numerics::real::Real;
+use crate::ode::nystrom::Row;
+use crate::ode::state::State;
 
 /// One term of a weighted sum of stages.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +109,39 @@ impl<S: Element> Pass<S> for Positions<'_, S> {
         for_weighted!((n, terms, k), |i, sum| {
             out[i] = square.multiply_add(sum, q[i] + drift.multiply_add(slope[i], e[i]));
         });
+    }
+}
+
+/// The point of a stage of a system of the second order, both in one kernel: the way into another takes as long as what it
+/// does. What it goes by is told by reference, by which a processor does not wait for copies.
+#[derive(Debug)]
+pub struct Point<'a, S> {
+    /// Where the coordinates go.
+    pub position: &'a mut [S],
+    /// Where the velocities go, if somebody looks at them.
+    pub velocity: Option<&'a mut [S]>,
+    /// The state at the start.
+    pub state: &'a State<S>,
+    /// The step.
+    pub h: &'a S,
+    /// How long it is until then, and what the stages weigh.
+    pub row: &'a Row<S>,
+    /// Their derivatives.
+    pub k: &'a [S],
+}
+
+impl<S: Element> Pass<S> for Point<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let Self { state, h, row, k, .. } = self;
+        let slope = (state.v(), &row.fraction);
+        let stages = Weighted { h, terms: &row.position, k };
+        Positions { out: self.position, q: state.position(), slope, stages }.run::<V>();
+        if let Some(out) = self.velocity {
+            let stages = Weighted { h, terms: &row.velocity, k };
+            Rates { out, y: state.velocity(), stages }.run::<V>();
+        }
     }
 }
 
