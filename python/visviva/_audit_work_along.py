@@ -30,6 +30,9 @@ __all__ = ["looks_at_time", "of_any_body", "work_along"]
 
 # Of the work that is done, without regard to sign, so much may be missed without a word.
 _TOLERATED = 0.03
+# What moves by less than this beside what its forces make of it in a span, or by its square beside others, rests.
+_HARDLY = 1e-5
+_EPSILON = float(np.finfo(np.float64).eps)
 # So many spans between times are looked at: what all forces do there is asked time by time.
 _SPANS = 2000
 
@@ -75,7 +78,7 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     Warns
     -----
     visviva.AccuracyWarning
-        If times are so far apart that the motion between them is not known.
+        If times are so far apart that the motion between them is not known; of scenes with rigid bodies nobody looks.
 
     Raises
     ------
@@ -141,12 +144,14 @@ def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
 def _warn_if_far_apart(trajectory: Trajectory, middle_v: Any, middle: Any) -> None:
     """Warn where the cubics between the times are not the motion: their accelerations at the ends are not those there.
 
-    A cubic whose acceleration is off by δ at its ends is off by hδ/8 in its velocity midway.
+    A cubic whose acceleration is off by δ at its ends is off by hδ/8 in its velocity midway. What rests, or hardly
+    moves beside others, is measured by what forces and others make of it, lest rounding be taken for a motion.
     """
     t, x, v = trajectory.t, trajectory.position, trajectory.velocity
     apart, every = np.diff(t), 1 + len(t) // _SPANS
-    impulses = np.abs(apart)[:, None] * np.linalg.norm(middle, axis=-1)
-    speeds = np.maximum(np.linalg.norm(middle_v, axis=-1), np.linalg.norm(v, axis=-1)[1:])
+    impulses = np.abs(apart)[:, None] * _norm(middle)
+    speeds = np.maximum(_norm(middle_v), _norm(v)[1:])
+    fastest = speeds.max(initial=0.0)
     done, missed = np.zeros(x.shape[1]), np.zeros(x.shape[1])
     for rows, scene, there in eras(trajectory):
         spans = np.arange(rows.start, rows.stop - 1, every)
@@ -155,21 +160,26 @@ def _warn_if_far_apart(trajectory: Trajectory, middle_v: Any, middle: Any) -> No
         bodies = slice(None) if there is None else there
         both = np.stack([spans, spans + 1])
         places, moving = x[both][:, :, bodies], v[both][:, :, bodies]
-        states = (each.reshape(-1, *places.shape[2:]) for each in (places, moving))
-        given = _forces(scene, t[both.ravel()], *states, per_mass=True).reshape(places.shape)
+        states = [each.reshape(-1, *places.shape[2:]) for each in (places, moving)]
+        given, sizes = (each.reshape(places.shape) for each in _accelerations_of_all(scene, t[both.ravel()], *states))
         h = apart[spans][:, None, None]
         mean = (places[1] - places[0]) / np.where(h != 0.0, h, 1.0)
         first = h * given[0] - (6.0 * mean - 4.0 * moving[0] - 2.0 * moving[1])
         last = h * given[1] + (6.0 * mean - 2.0 * moving[0] - 4.0 * moving[1])
-        off = np.maximum(np.linalg.norm(first, axis=-1), np.linalg.norm(last, axis=-1)) / 8.0
-        done[bodies] += (impulses[spans] * speeds[spans]).sum(axis=0)[bodies]
+        off = np.maximum(_norm(first), _norm(last)) / 8.0
+        # Each place is known to a rounding, and six times that over the time between two is in the cubic's rates.
+        rounding = 2.0 * _EPSILON * (_norm(places).max(axis=0) / np.where(h != 0.0, np.abs(h), 1.0)[..., 0])
+        off = np.maximum(off - rounding, 0.0)
+        own = np.maximum(speeds[spans][:, bodies], _HARDLY * np.abs(h[..., 0]) * _norm(sizes).max(axis=0))
+        done[bodies] += (impulses[spans][:, bodies] * np.maximum(own, _HARDLY**2 * fastest)).sum(axis=0)
         missed[bodies] += (impulses[spans][:, bodies] * off).sum(axis=0)
     share = missed / np.where(done > 0.0, done, 1.0)
     body = int(share.argmax())
     if share[body] > _TOLERATED:
+        part = f"about {100.0 * share[body]:.0f} %" if share[body] < 1.0 else "more than all"
         warnings.warn(
-            f"the times of the run are too far apart for its motion: about {100.0 * share[body]:.0f} % of the work "
-            f"done on body {body} is not known; record more, as the error falls with the fourth power of their number",
+            f"the times of the run are too far apart for its motion: {part} of the work done on body {body} is not "
+            "known; record more, as the error falls with the fourth power of their number",
             AccuracyWarning,
             stacklevel=callers_inside(),
         )
@@ -192,20 +202,31 @@ def _alone(trajectory: Trajectory, force: Force) -> Scene:
     return alone
 
 
-def _forces(scene: Scene, t: Any, x: Any, v: Any, *, per_mass: bool = False) -> NDArray[np.float64]:
-    """Those on every body at every time, (T, N, 3), of all the forces that a scene has; or the accelerations."""
-    mass = scene.particles.mass
-    given = np.zeros(x.shape)
+def _forces(scene: Scene, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
+    """Those on every body at every time, (T, N, 3), of all the forces that a scene has."""
+    return scene.particles.mass[:, None] * _accelerations_of_all(scene, t, x, v)[0]
+
+
+def _accelerations_of_all(scene: Scene, t: Any, x: Any, v: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What all forces of a scene make together, and the sum of the sizes of what each makes; (T, N, 3) both."""
+    given, sizes = np.zeros(x.shape), np.zeros(x.shape)
     if len(t):
         for force in scene.forces:
-            given += _accelerations(force, mass, t, x, v)
-    return given if per_mass else mass[:, None] * given
+            one = _accelerations(force, scene.particles.mass, t, x, v)
+            given += one
+            sizes += np.abs(one)
+    return given, sizes
+
+
+def _norm(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
 def _accelerations(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
-    """Those of every body at every time, (T, N, 3): all times as so many more bodies, if a force is the same at all."""
+    """Those of every body at every time, (T, N, 3): all times as so many more bodies, if that is the same."""
     own = force._to_core()
-    if not looks_at_time(force) and (of_all := _of_all_times(force, own, len(t), len(mass))):
+    alike = not (looks_at_time(force) or _core.acts_between(own))
+    if alike and (of_all := _of_all_times(force, own, len(t), len(mass))):
         masses, places, velocities = np.tile(mass, len(t)), x.reshape(-1, 3), v.reshape(-1, 3)
         # What is refused is refused below, where bodies have the numbers that they have in the run.
         with suppress(InvalidInput):

@@ -42,11 +42,10 @@ pub struct Nodes<'a, S> {
     pub d: PairMut<'a, S>,
     /// The nodes gone by.
     pub past: Differences<'a, S>,
-    /// The step, squared. It stands here so that no slice lies across two lines of a processor's cache, of which one that was
-    /// just written is read late, after all that was written before it.
-    pub h2: &'a S,
     /// The accelerations at the present node.
     pub a: &'a mut [S],
+    /// The step, squared.
+    pub h2: &'a S,
     /// h² times the weights of the second differences, the oldest first.
     pub weights: &'a [S],
 }

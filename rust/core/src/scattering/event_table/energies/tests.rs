@@ -68,13 +68,13 @@ fn what_is_not_smooth_has_none() {
     }
 }
 
-/// Of 3, 5 and 9 tables of whom the rule of geometric convergence says 4e-7 for the last order, and 4e-2.
+/// Errors of 3, 5 and 9 tables, of which the rule of geometric convergence makes 4e-9 and 2e-2 for the last order.
 #[test]
 fn the_last_order_is_tried_where_there_is_hope() {
     assert!(!is_in_vain(&[1e-1, 1e-2]), "too soon to tell");
     assert!(!is_in_vain(&[1e-1, 4e-3, 4e-5]));
     assert!(is_in_vain(&[2e-1, 1e-1, 6e-2]));
-    // What is no number, or has grown, is no hope of less.
+    // What has grown is no hope of less.
     assert!(is_in_vain(&[1e-3, 1e-3, 1.0]));
 }
 
