@@ -43,7 +43,7 @@ def one_or_some(index: Any, count: int) -> int | slice | NDArray[np.intp]:
     Raises
     ------
     InvalidInput
-        For what is none, and a mask of another length.
+        For what is none, a mask of another length, and what chooses no copy.
     IndexError
         For a number of no copy.
 
@@ -55,6 +55,8 @@ def one_or_some(index: Any, count: int) -> int | slice | NDArray[np.intp]:
     (3, array([0, 3, 0]), array([0, 2, 3]))
     """
     if isinstance(index, slice):
+        if not range(count)[index]:
+            _refuse_none(count)
         return index
     # True is 1 to Python, and in a mask it is none.
     if isinstance(index, bool):
@@ -86,8 +88,10 @@ def _several(index: Any, count: int) -> NDArray[np.intp]:
     if array.dtype.kind == "b":
         if len(array) != count:
             raise InvalidInput("index", f"expected a mask of shape ({count},), got {array.shape}")
-        return np.flatnonzero(array)
-    if array.dtype.kind not in "iuO" and len(array):
+        array = np.flatnonzero(array)
+    if not len(array):
+        _refuse_none(count)
+    if array.dtype.kind not in "iuO":
         _refuse(index)
     outside = (array < -count) | (array >= count)
     if outside.any():
@@ -108,6 +112,10 @@ def _of_one_kind(array: NDArray[Any]) -> NDArray[Any]:
 def _refuse(index: Any, advice: str = "") -> NoReturn:
     came = f"an array of {index.dtype} of shape {index.shape}" if isinstance(index, np.ndarray) else shortened(index)
     raise InvalidInput("index", f"{_EXPECTED}, got {came}{advice}") from None
+
+
+def _refuse_none(count: int) -> NoReturn:
+    raise InvalidInput("index", f"expected at least one of {count} copies, got none")
 
 
 def rows_of(chosen: int | slice | NDArray[np.intp]) -> slice | NDArray[np.intp]:

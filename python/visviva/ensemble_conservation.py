@@ -17,7 +17,6 @@ from visviva._keywords import known_keywords
 from visviva._some_copies import each_of, one_or_some
 from visviva._text import count
 from visviva.conservation import ROWS, Conservation, Drift, conservation_of, has_rows, row_of
-from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -154,8 +153,6 @@ class EnsembleConservation(Shown):
         if isinstance(chosen, int):
             return self._copies[chosen]
         copies = each_of(self._copies, chosen)
-        if not copies:
-            raise InvalidInput("index", f"expected at least one of {len(self)} copies, got none")
         status = self.status[chosen]
         status.setflags(write=False)
         return _of_copies(copies, status)

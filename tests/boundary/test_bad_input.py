@@ -121,7 +121,7 @@ type("Mine", (vv.potentials.Yukawa,), {})           | Yukawa      | got Mine
 vv.Scene(particles=P([1], [[0, 0, 0]]), forces=[3]) | forces      | got an int
 copies["first"]                                     | index       | expected a whole number, a slice, a list or array of whole numbers, or a mask, got 'first'
 copies.run(1)[1.0]                                  | index       | expected a whole number, a slice, a list or array of whole numbers, or a mask, got 1.0
-copies[2:2]                                         | position    | at least one copy
+copies[2:2]                                         | index       | at least one of 2 copies
 scene.run(1).save(None)                             | path        | expected the path of a file, got NoneType
 vv.load(None)                                       | path        | expected the path of a file, got NoneType
 vv.orbits.state(1, semi_major_axis=1, eccentricity=0) | semi_major_axis | give pericenter = a\|1 − e\|

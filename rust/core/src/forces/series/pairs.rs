@@ -169,6 +169,7 @@ impl<S: Element> Whole<'_, S> {
             }
             return;
         }
+        debug_assert!(jet.order <= 22, "the orders below are all that there are");
         macro_rules! orders {
             ($($n:literal)+) => {$(
                 if $n == jet.order {

@@ -73,9 +73,10 @@ pub(super) fn energy_at_end(
         writer: &writer,
     };
     let before = left_to_do(ticker);
-    let reports = integrate::run(&job, ticker)?;
+    let reports = integrate::run(&job, ticker);
     // Steps that end early leave some of theirs, which nobody is to wait for.
     ticker.advance(left_to_do(ticker).saturating_sub(before));
+    let reports = reports?;
     if reports.iter().any(|report| report.ending != Ending::Finished) {
         return Ok(None);
     }
