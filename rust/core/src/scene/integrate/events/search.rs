@@ -229,7 +229,7 @@ impl Search<'_, '_> {
         let mut parts = (FEWEST * length / run).ceil().min(FEWEST);
         let mut samples = SAMPLES.to_vec();
         let event = self.watch.event(self.event).0;
-        let is_known = !matches!(event.what, What::Function(_));
+        let is_known = !matches!(event.what, What::Function(_) | What::Expression(_));
         if let (true, Some(turns)) = (event.sees_turning(), &self.watch.turns) {
             parts = parts.max(turns.parts(length)?);
         }
