@@ -117,7 +117,8 @@ def _root(nodes: Nodes, function: Callable[..., Any], names: tuple[str, ...], pa
     ordered.__qualname__ = name_of(function)
     state = (rows(0), rows(3), Expression(nodes, nodes.add("time")))
     try:
-        return recorded(nodes, call_with_expressions(nodes, "events", ordered, state, {}), "events")
+        result = call_with_expressions(nodes, "events", ordered, state, {})
+        return recorded(nodes, result.view(np.ndarray) if isinstance(result, _Rows) else result, "events")
     except IndexError as error:
         shape = f"positions and velocities are of shape ({particles}, 3)"
         raise InvalidInput("events", f"{name_of(function)}: {error}; {shape}") from None

@@ -70,7 +70,7 @@ impl Expression {
         let coordinates: Vec<(usize, usize)> = of_bodies.collect();
         let (mut graph, roots) =
             table::read(nodes, 1, Variables { count: 2 * n, unit: 1.0 }, Parameters::Told(&[]))?;
-        let bounds = degree(&graph, &roots)
+        let bounds = degree(&graph, roots[0])
             .is_none_or(|degree| degree > SQUARE)
             .then(|| Arc::new(Intervals::new(graph.clone(), roots.clone())));
         let looks_at_velocities =
@@ -107,8 +107,11 @@ impl Expression {
 
     /// Its value, of all bodies of a scene.
     pub(crate) fn value_of(&self, t: f64, position: &[[f64; 3]], velocity: &[[f64; 3]]) -> f64 {
-        let at_rest = Moving { position: [0.0; 3], ..Moving::default() };
-        let of = |&body: &usize| Moving { position: position[body], velocity: velocity[body], ..at_rest };
+        let of = |&body: &usize| Moving {
+            position: position[body],
+            velocity: velocity[body],
+            ..Moving::default()
+        };
         let bodies: Vec<Moving> = self.bodies.iter().map(of).collect();
         let places: Vec<usize> = (0..bodies.len()).collect();
         let mut working = Working::new(self);
@@ -139,9 +142,9 @@ impl Expression {
 }
 
 /// The degree of a polynomial of the time and the state; none of anything else.
-fn degree(graph: &Graph, roots: &[Id]) -> Option<u32> {
+fn degree(graph: &Graph, root: Id) -> Option<u32> {
     let mut degrees: FxHashMap<Id, u32> = FxHashMap::default();
-    for id in graph.reachable(roots) {
+    for id in graph.reachable(&[root]) {
         let of = |id: &Id| degrees.get(id).copied();
         let degree = match graph.node(id) {
             Node::Constant(_) | Node::Parameter(_) => 0,
@@ -155,11 +158,7 @@ fn degree(graph: &Graph, roots: &[Id]) -> Option<u32> {
         };
         let _ = degrees.insert(id, degree);
     }
-    of_all(&degrees, roots)
-}
-
-fn of_all(degrees: &FxHashMap<Id, u32>, roots: &[Id]) -> Option<u32> {
-    roots.iter().try_fold(0, |most: u32, id| Some(most.max(*degrees.get(id)?)))
+    degrees.get(&root).copied()
 }
 
 /// Whether nothing changes where all places, or all velocities, change by the same.
@@ -234,5 +233,45 @@ impl Working {
         self.machine.state().copy_from_slice(&self.ends[end]);
         self.machine.run(t);
         [0, 1].map(|index| self.machine.output(index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a function of places and velocities of two bodies: its degree, and whether it is relative.
+    fn told(make: impl Fn(&mut Graph, [Id; 2], [Id; 2]) -> Id) -> (Option<u32>, bool) {
+        let mut graph = Graph::default();
+        let [a, b, u, v] = [0, 1, 2, 3].map(|index| graph.variable(index));
+        let root = make(&mut graph, [a, b], [u, v]);
+        (degree(&graph, root), is_relative(&mut graph, root, &[(0, 0), (1, 0)]))
+    }
+
+    #[test]
+    fn what_the_ends_of_a_step_tell_and_what_no_origin_changes() {
+        assert_eq!(told(|graph, [a, b], _| graph.subtract(a, b)), (Some(1), true));
+        assert_eq!(told(|graph, [a, b], _| graph.add(a, b)), (Some(1), false));
+        let square = |graph: &mut Graph, [a, b]: [Id; 2]| {
+            let apart = graph.subtract(a, b);
+            graph.multiply(apart, apart)
+        };
+        assert_eq!(told(|graph, x, _| square(graph, x)), (Some(2), true));
+        assert_eq!(
+            told(|graph, x, v| {
+                let (x, v) = (graph.subtract(x[0], x[1]), graph.subtract(v[0], v[1]));
+                graph.multiply(x, v)
+            }),
+            (Some(2), true)
+        );
+        assert_eq!(told(|graph, _, [u, _]| graph.multiply(u, u)), (Some(2), false));
+        assert_eq!(
+            told(|graph, x, _| {
+                let square = square(graph, x);
+                graph.multiply(square, square)
+            }),
+            (Some(4), true)
+        );
+        assert_eq!(told(|graph, [a, b], _| graph.divide(a, b)).0, None);
     }
 }
