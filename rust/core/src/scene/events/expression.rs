@@ -192,6 +192,8 @@ pub struct Working {
     machine: Machine<f64>,
     /// Coordinates, velocities and accelerations, at both ends of a step.
     pub(crate) ends: [Vec<f64>; 2],
+    /// Its rates there, if they tell what it does between.
+    pub(crate) rates: Option<[f64; 2]>,
     /// Its bounds, if there are any.
     pub(crate) shape: Option<Shape>,
 }
@@ -202,7 +204,7 @@ impl Working {
         let formula = expression.formula.clone();
         let ends = [0, 1].map(|_| vec![0.0; 3 * formula.coordinates.len()]);
         let shape = formula.bounds.as_ref().map(|bounds| Shape::new(bounds, &[]));
-        Self { machine: Machine::new(formula.code.clone(), &[]), formula, ends, shape }
+        Self { machine: Machine::new(formula.code.clone(), &[]), formula, ends, rates: None, shape }
     }
 
     /// Takes the coordinates of bodies in these places, about an origin, for those at an end of a step.

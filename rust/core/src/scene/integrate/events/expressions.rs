@@ -29,6 +29,7 @@ impl Watch<'_> {
             working.take(end, (bodies, places), &origin);
         }
         let times = times.map(|elapsed| self.job.scene.t0 + elapsed);
+        working.rates = None;
         let Working { ends: [before, after], shape, .. } = &mut *working;
         if let Some(shape) = shape {
             let n = before.len() / 3;
@@ -41,8 +42,19 @@ impl Watch<'_> {
         }
         working.accelerate(h);
         let rates = [0, 1].map(|end| working.run(end, times[end])[1]);
+        working.rates = Some(rates);
         let cubic = cubic(values, rates, h);
         Some(keeps_clear(cubic) || keeps_clear_after_all(cubic))
+    }
+}
+
+impl Watch<'_> {
+    /// The rates of an event at both ends of the step that was come to the end of, if they tell it.
+    pub(super) fn rates(&self, event: usize, h: f64) -> Option<[f64; 2]> {
+        match self.working.get(event).and_then(Option::as_ref) {
+            Some(working) => working.borrow().rates,
+            None => self.event(event).0.rates([&self.sights[event], &self.next[event]], h),
+        }
     }
 }
 
