@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["Event", "checked_direction", "direction_of", "make_event"]
 
 
-
 @known_keywords
 @dataclass(frozen=True, slots=True, repr=False)
 class Event(Record):

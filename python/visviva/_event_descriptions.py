@@ -53,7 +53,7 @@ _BODIES = ("first", "second", "body", "about")
 
 
 def of_scene(events: list[dict[str, Any]], names: tuple[str, ...], particles: int) -> list[dict[str, Any]]:
-    """The same in a scene of so many bodies: with the indices of those that were given by name, expressions as numbers."""
+    """The same in a scene of so many bodies: those that were given by name by index, and expressions as numbers."""
     found = []
     for index, event in enumerate(events):
         if event["kind"] == "expression":

@@ -15,7 +15,14 @@ from visviva._event_functions import check_event_function, name_of, sees_turning
 from visviva._expression_table import table
 from visviva._names import body_index
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, not_compiled, recorded
+from visviva.generalized._nodes import (
+    Expression,
+    Nodes,
+    call_with_expressions,
+    expression_array,
+    not_compiled,
+    recorded,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -93,11 +100,13 @@ def _numbers(function: Callable[..., Any], names: tuple[str, ...], particles: in
     coordinates = sorted({(body, at % 3) for body, at in looked_at})
     places = {pair: place for place, pair in enumerate(coordinates)}
     kept = Nodes("question")
+
+    def renumbered(variable: float) -> float:
+        body, at = divmod(int(variable), 6)
+        return float(places[body, at % 3] + len(places) * (at // 3))
+
     for operation, arguments, value in found:
-        if operation == "variable":
-            body, at = divmod(int(value), 6)
-            value = float(places[body, at % 3] + len(places) * (at // 3))
-        kept.all.append((operation, arguments, value))
+        kept.all.append((operation, arguments, renumbered(value) if operation == "variable" else value))
     numbers = tuple(map(float, table(kept, [root], ())))
     return {"name": name_of(function), "nodes": numbers, "coordinates": tuple(coordinates)}
 

@@ -268,7 +268,7 @@ def expression(kind: int, pair: list[int], bodies: vv.Particles, later: float) -
         lambda t, x, v: np.sqrt((x[i] - x[j]) @ (x[i] - x[j]) + 0.25),
         lambda t, x, v: x[i] @ x[i] - 0.5 * x[j, 1] ** 2,
         lambda t, x, v: (x[i] - x[j]) @ (v[i] - 0.5 * v[j]),
-        lambda t, x, v: np.sin(x[i, 0] + x[j, 2]) + np.exp(-x[i, 1] ** 2),
+        lambda t, x, v: np.sin(x[i, 0] + x[j, 2]) + np.exp(-(x[i, 1] ** 2)),
     ]
     function = functions[kind]
     level = float(function(later, place, velocity))

@@ -46,7 +46,7 @@ def test_what_cannot_be_looked_for_is_refused(given: Any, message: str) -> None:
 def test_scenes_refuse_what_is_of_generalized_coordinates() -> None:
     with pytest.raises(vv.InvalidInput, match="coordinate is of runs in generalized coordinates; of bodies"):
         KEPLER.run(1.0, events=[events.coordinate("theta")])
-    with pytest.raises(vv.InvalidInput, match=r"expected a function f\(t, position, velocity\), in this order"):
+    with pytest.raises(vv.InvalidInput, match="expected one number of the function, got ndarray"):
         KEPLER.run(1.0, events=[events.expression(speed)])
     cases: list[tuple[str, Any]] = [
         ("name", lambda: events.coordinate(3)),

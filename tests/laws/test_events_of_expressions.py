@@ -67,7 +67,7 @@ def copies(scene: vv.Scene, members: int = 19) -> vv.EnsembleScene:
     return scene.ensemble(velocity=scene.particles.velocity * factors)
 
 
-def how(method: str) -> dict[str, Any]:
+def how(method: Any) -> dict[str, Any]:
     return {"method": method} | ({"rtol": 1e-10} if BY_NAME[method].adaptive else {"dt": 0.02})
 
 
@@ -148,13 +148,13 @@ def test_runs_backwards(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", ["dop853", "verner98", "rk4"])
-def test_pairs_of_zeros_in_one_step_are_found(method: str) -> None:
+def test_pairs_of_zeros_in_one_step_are_found(method: Any) -> None:
     """A free body comes to within a distance for a short while, at any place of a long step."""
     step = 1.0
     for passed in np.linspace(0.03, 0.97, 29):
         for written in (lambda r: np.sqrt(r @ r) - 0.02, lambda r: r @ r - 4e-4):
             free = vv.Scene(vv.Particles([1.0], [[-passed, 0.0, 0.0]], [[1.0, 0.0, 0.0]]), vv.LinearDrag(1e9))
-            asked = {"method": method} | ({} if BY_NAME[method].adaptive else {"dt": step})
+            asked: dict[str, Any] = {"method": method} | ({} if BY_NAME[method].adaptive else {"dt": step})
 
             def near(t: Any, position: Any, velocity: Any, written: Callable[[Any], Any] = written) -> Any:
                 return written(position[0])
@@ -182,9 +182,8 @@ def test_bodies_go_by_their_names() -> None:
 
 def test_spheres_that_bounce_and_merge() -> None:
     """What depends on velocities jumps where they meet; one of two bodies that are one is that of the whole."""
-    particles = vv.Particles(
-        [1.0, 1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0], [4.0, 1.0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [-1.5, 0, 0]], radius=0.2
-    )
+    position, velocity = [[-1.0, 0, 0], [1.0, 0, 0], [4.0, 1.0, 0]], [[1.0, 0, 0], [-1.0, 0, 0], [-1.5, 0, 0]]
+    particles = vv.Particles([1.0, 1.0, 1.0], position, velocity, radius=0.2)
     scene = vv.Scene(particles, vv.UniformField([0.0, 0.1, 0.0]))
 
     def turned(t: Any, position: Any, velocity: Any) -> Any:
@@ -196,7 +195,7 @@ def test_spheres_that_bounce_and_merge() -> None:
     some = scene.ensemble(position=particles.position + np.linspace(0.0, 0.1, 5)[:, None, None])
     for rule in ("bounce", "merge"):
         for asked in (scene, some):
-            given = {"method": "dop853", "collisions": rule}
+            given: dict[str, Any] = {"method": "dop853", "collisions": rule}
             one = asked.run(3.0, events=[vv.events.expression(turned), vv.events.expression(level)], **given).events
             other = asked.run(3.0, events=[turned, level], **given).events
             assert len(other)
@@ -207,6 +206,7 @@ def test_spheres_that_bounce_and_merge() -> None:
 def test_a_result_keeps_what_was_compiled(tmp_path: Path) -> None:
     out = planets().run(SPAN, events=EXPRESSIONS, method="dop853")
     out.save(tmp_path / "run.npz")
+    kept: Any
     for kept in (pickle.loads(pickle.dumps(out)), vv.load(tmp_path / "run.npz")):
         assert kept.events == out.events
         assert kept.events.definitions == out.events.definitions
