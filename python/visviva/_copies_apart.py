@@ -101,9 +101,9 @@ def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajector
         whole_number("threads", request.threads, 1, 1024)
     asked = alone.to_core(ensemble._keywords, ensemble._names)
     sendable(asked["events"], lambda event: event["kind"] == "function")
-    # Which columns are recorded if nothing is said is known by identity, which no journey keeps.
     # Expressions go as what was made of them: their functions may be of this process alone.
     events = [from_description(event) for event in asked["events"]]
+    # Which columns are recorded if nothing is said is known by identity, which no journey keeps.
     alone = replace(alone, record=cast("list[ColumnName]", asked["record"]), events=events)
     plan = _core.plan(asked)
     bounds = bounds_of(len(ensemble))
