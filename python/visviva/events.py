@@ -276,7 +276,7 @@ def expression(
     Notes
     -----
     It may do arithmetic and take NumPy's functions, and must not branch: what must is for `function`. In a scene it
-    costs a fiftieth of that, holds no lock, and runs in all threads; a result keeps what was compiled, so that it can
+    costs a tenth of that or less, holds no lock, and runs in all threads; a result keeps what was compiled, so it can
     be looked for again.
 
     Examples
