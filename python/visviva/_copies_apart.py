@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from visviva import _core
 from visviva._arrays import whole_number
+from visviva._event_descriptions import from_description
 from visviva._executors import checked_executor, results_in_order
 from visviva._joined_copies import joined_copies
 from visviva._progress import callback
@@ -100,8 +101,10 @@ def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajector
         whole_number("threads", request.threads, 1, 1024)
     asked = alone.to_core(ensemble._keywords, ensemble._names)
     sendable(asked["events"], lambda event: event["kind"] == "function")
+    # Expressions go as what was made of them: their functions may be of this process alone.
+    events = [from_description(event) for event in asked["events"]]
     # Which columns are recorded if nothing is said is known by identity, which no journey keeps.
-    alone = replace(alone, record=cast("list[ColumnName]", asked["record"]))
+    alone = replace(alone, record=cast("list[ColumnName]", asked["record"]), events=events)
     plan = _core.plan(asked)
     bounds = bounds_of(len(ensemble))
     calls = [(ensemble[start:end], alone) for start, end in pairwise(bounds)]

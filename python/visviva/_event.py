@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Event", "checked_direction", "direction_of", "make_event"]
 
-#: Of runs in generalized coordinates alone.
-_GENERALIZED = ("coordinate", "expression")
-
 
 @known_keywords
 @dataclass(frozen=True, slots=True, repr=False)
@@ -58,13 +55,13 @@ class Event(Record):
 
     def _to_core(self) -> dict[str, Any]:
         parameters: dict[str, Any] = dict(self.parameters)
-        if self.kind in _GENERALIZED:
+        if self.kind == "coordinate":
             raise InvalidInput(
                 "events",
-                f"{self.kind} is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
-                "plane, and functions f(t, position, velocity)",
+                "coordinate is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
+                "expression, plane, and functions f(t, position, velocity)",
             )
-        if "name" in parameters:
+        if "name" in parameters and "nodes" not in parameters:
             raise InvalidInput(
                 "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
             )

@@ -13,7 +13,7 @@ from visviva._names import body_index
 from visviva.errors import InvalidInput
 from visviva.events import apsis, distance, energy, function, plane
 
-__all__ = ["descriptions", "from_description", "to_core", "with_body_indices"]
+__all__ = ["descriptions", "from_description", "of_scene", "to_core"]
 
 
 def to_core(given: Any) -> list[dict[str, Any]]:
@@ -52,10 +52,15 @@ def to_core(given: Any) -> list[dict[str, Any]]:
 _BODIES = ("first", "second", "body", "about")
 
 
-def with_body_indices(events: list[dict[str, Any]], names: tuple[str, ...]) -> list[dict[str, Any]]:
-    """The same with the indices of the bodies that were given by name."""
+def of_scene(events: list[dict[str, Any]], names: tuple[str, ...], particles: int) -> list[dict[str, Any]]:
+    """The same in a scene of so many bodies: those that were given by name by index, and expressions as numbers."""
     found = []
-    for event in events:
+    for index, event in enumerate(events):
+        if event["kind"] == "expression":
+            from visviva._event_expressions import traced
+
+            found.append(traced(index, event, names, particles))
+            continue
         indices = {name: body_index(name, event[name], names) for name in _BODIES if isinstance(event.get(name), str)}
         resolved = {**event, **indices}
         for first, second in (("first", "second"), ("body", "about")):
@@ -87,6 +92,10 @@ def from_description(description: dict[str, Any]) -> Event:
             return apsis(description["body"], description["about"], **options)
         case "energy":
             return energy(description["value"], **options)
+        case "expression":
+            from visviva._event_expressions import from_numbers
+
+            return make_event("expression", **from_numbers(description), **options)
         case "function":
             return make_event("function", name=str(description["name"]), **options)
         case kind:

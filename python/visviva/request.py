@@ -200,9 +200,9 @@ class PlanRequest:
                 f"leave rtol out and choose dt, or name an adaptive method such as verner98",
             )
         if asked["events"]:
-            from visviva._event_descriptions import with_body_indices
+            from visviva._event_descriptions import of_scene
 
-            asked["events"] = with_body_indices(asked["events"], names)
+            asked["events"] = of_scene(asked["events"], names, prepared["position"].shape[1])
         return cast("_core._Request", asked)
 
 

@@ -43,7 +43,8 @@ def events_some_of_which_end_it() -> tuple[vv.EnsembleScene, dict[str, Any]]:
     scene = vv.problems.kepler(e=0.5).scene
     copies = scene.ensemble(velocity=scene.particles.velocity * np.linspace(0.7, 1.3, 40)[:, None, None])
     near = vv.events.distance(0, 1, below=0.5, terminal=True)
-    return copies, {"t": 20.0, "events": [vv.events.apsis(0, 1), near], "method": "leapfrog", "dt": 0.01}
+    level = vv.events.expression(lambda t, position, velocity: position[0, 1] - position[1, 1])
+    return copies, {"t": 20.0, "events": [vv.events.apsis(0, 1), level, near], "method": "leapfrog", "dt": 0.01}
 
 
 @case

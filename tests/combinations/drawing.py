@@ -41,7 +41,9 @@ ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
 # As those, in a speed.
 ROUGH_FORCES = {"Drag", "SampledDrag"}
 # A function of one's own is no value that a recipe could hold, and scenes have no generalized coordinates.
-EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function", "coordinate", "expression"})
+EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function", "coordinate"})
+# As with potentials: what is kept looks for those of before.
+FIRST_EVENTS = [name for name in EVENTS if name != "expression"]
 
 
 def declared(cls: type[Any]) -> list[dict[str, Any]]:
@@ -251,7 +253,26 @@ def event(name: str, seed: int, scene: vv.Scene, span: float) -> vv.events.Event
             return vv.events.energy(scene.invariants().energy * (1.0 + 1e-3 * (share - 0.5)), **how)
         except vv.InvalidInput:
             return vv.events.energy(share, **how)
+    if name == "expression":
+        pair = [index % max(len(bodies), 1) for index in (first, second)]
+        return vv.events.expression(expression(draw.randrange(5), pair, bodies, share * span), **how)
     raise NotImplementedError(f"tests/combinations/drawing.py cannot draw the event {name!r} yet")
+
+
+def expression(kind: int, pair: list[int], bodies: vv.Particles, later: float) -> Callable[[Any, Any, Any], Any]:
+    """What a straight motion passes at a time, by two bodies or one: linear, a root, a square, of speeds, or a wave."""
+    i, j = pair
+    place, velocity = bodies.position + later * bodies.velocity, bodies.velocity
+    functions: list[Callable[[Any, Any, Any], Any]] = [
+        lambda t, x, v: x[i, 0] - x[j, 0],
+        lambda t, x, v: np.sqrt((x[i] - x[j]) @ (x[i] - x[j]) + 0.25),
+        lambda t, x, v: x[i] @ x[i] - 0.5 * x[j, 1] ** 2,
+        lambda t, x, v: (x[i] - x[j]) @ (v[i] - 0.5 * v[j]),
+        lambda t, x, v: np.sin(x[i, 0] + x[j, 2]) + np.exp(-(x[i, 1] ** 2)),
+    ]
+    function = functions[kind]
+    level = float(function(later, place, velocity))
+    return lambda t, x, v: function(t, x, v) - level
 
 
 def _needs_mass(name: str) -> bool:

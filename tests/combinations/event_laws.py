@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import EVENTS
+from drawing import FIRST_EVENTS
 from law_book import EPSILON, law
 from recipe import COLUMNS, Case, Recipe, Refused
 from running import differences, events, execute, outcome
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def _watched(recipe: Recipe) -> Recipe:
     """The recipe, with events if it has none."""
     # The energy of many bodies takes its time (see `recipes`).
-    kinds = EVENTS if recipe.bodies <= 8 else [name for name in EVENTS if name != "energy"]
+    kinds = FIRST_EVENTS if recipe.bodies <= 8 else [name for name in FIRST_EVENTS if name != "energy"]
     some = tuple((kinds[(recipe.seed + i) % len(kinds)], recipe.seed % 97 + i) for i in range(2))
     return recipe if recipe.events else replace(recipe, events=some)
 
@@ -87,6 +87,19 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
         work = float((mass * np.linalg.norm(a, axis=1)).sum()) * near
         boost = float(mass.sum()) * _size(v) * EPSILON * (_size(v) + span * _size(a))
         return invariants.energy - told["value"], 64 * (EPSILON * scale + 3 * (work + boost))
+    if event.kind == "expression":
+        # What the roundings of all numbers make of it.
+        function, near = told["expression"], EPSILON * (_size(x) + moved)
+        value = float(function(scene.t0, x, v))
+        boost = EPSILON * (_size(v) + span * _size(scene.acceleration()))
+        nudge, changes = 2.0**-20, 0.0
+        for array, digits in ((x, near), (v, boost)):
+            for at in np.ndindex(array.shape):
+                beside = array.copy()
+                beside[at] += nudge * (digits / EPSILON)
+                state = (beside, v) if array is x else (x, beside)
+                changes += abs(float(function(scene.t0, *state)) - value) / nudge * EPSILON
+        return value, 64 * (changes + EPSILON)
     if event.kind == "plane":
         normal = np.array(told["normal"])
         body, point = told["body"], np.array(told["point"])
@@ -123,7 +136,7 @@ def a_located_event_is_a_zero_at_its_state(recipe: Recipe) -> None:
         place, velocity = np.where(known[:, None], [x, v], [bodies.position, bodies.velocity])
         if event.kind == "energy" and not known[start.particles.mass > 0.0].all():
             raise AssertionError("an energy of bodies that are not told")
-        jumps = collide and event.kind in ("apsis", "energy")
+        jumps = collide and event.kind in ("apsis", "energy", "expression")
         if jumps and t in (result if case.alone else result[int(member)]).collisions.t:
             continue  # where what jumps from one sign to the other is an event, and no zero
         value, allowed = _value(event, start.with_state(place, velocity, float(t)), span)

@@ -13,7 +13,7 @@ import pytest
 from event_scenes import kepler
 
 import visviva as vv
-from visviva._event_descriptions import descriptions, from_description, to_core, with_body_indices
+from visviva._event_descriptions import descriptions, from_description, of_scene, to_core
 
 
 @pytest.mark.parametrize("method", ["dop853", "verner98"])
@@ -57,12 +57,12 @@ def test_of_events_a_result_keeps_what_tells_of_them_and_of_a_function_its_name_
 def test_names_of_bodies_are_resolved_where_an_event_has_some() -> None:
     """And no others: an event without bodies, or with indices, is told to the core as it came."""
     given = to_core([vv.events.energy(0.5), vv.events.distance("Sun", 2, below=1.0), vv.events.apsis(1, "Sun")])
-    there = with_body_indices(given, ("Sun", "Earth", "Mars"))
+    there = of_scene(given, ("Sun", "Earth", "Mars"), 3)
     assert there[0] == given[0]
     assert (there[1]["first"], there[1]["second"], there[1]["distance"]) == (0, 2, 1.0)
     assert (there[2]["body"], there[2]["about"]) == (1, 0)
     with pytest.raises(vv.InvalidInput, match="second: expected two bodies, got 0 twice"):
-        with_body_indices(to_core([vv.events.distance("Sun", 0, below=1.0)]), ("Sun", "Earth"))
+        of_scene(to_core([vv.events.distance("Sun", 0, below=1.0)]), ("Sun", "Earth"), 2)
 
 
 @pytest.mark.parametrize("call", [lambda r, v, t: v[0, 0], lambda position, velocity, time: position[0, 0]])

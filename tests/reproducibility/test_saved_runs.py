@@ -43,6 +43,10 @@ CASES: dict[str, tuple[Callable[[], vv.Scene], dict[str, Any]]] = {
     "adaptive": (figure, {}),
     "adaptive, with tolerances of each": (figure, {"method": "dop853", "atol": {"position": [1e-9, 1e-8, 1e-9]}}),
     "events": (figure, {"method": "kahan_li8", "dt": 0.01, "events": [vv.events.apsis(0, 1)]}),
+    "an expression": (
+        figure,
+        {"method": "kahan_li8", "dt": 0.01, "events": [vv.events.expression(lambda t, x, v: x[0, 0] - x[1, 0] ** 3)]},
+    ),
     "the third event ends it": (
         figure,
         {"method": "kahan_li8", "dt": 0.01, "events": [vv.events.plane([0, 0, 0], [0, 1.0, 0], terminal=3)]},

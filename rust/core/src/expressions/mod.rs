@@ -20,6 +20,7 @@ pub mod nodes;
 pub mod precise;
 pub mod program;
 pub mod series;
+pub mod shape;
 pub mod table;
 mod verify;
 mod walk;

@@ -5,8 +5,11 @@
 //!
 //! Directions are those of increasing time, also in a run backwards: a pericenter stays one.
 
+mod expression;
 mod sight;
 
+pub use expression::{Expression, Working};
+pub(crate) use expression::{Formula, accelerations};
 pub(crate) use sight::dot;
 pub use sight::{Moving, Sight, apart};
 
@@ -19,8 +22,8 @@ use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::Ticker;
 use crate::words::{number, numbers};
+use core::cell::RefCell;
 use core::fmt;
-
 use std::sync::Arc;
 
 /// A function of time, positions and velocities, the numbers of one body after those of another, and of how the rigid bodies
@@ -75,6 +78,8 @@ pub enum What {
     Energy(f64),
     /// Spheres come to touch, any two of them; these pairs are in contact at the start.
     Contact(Arc<[(usize, usize)]>),
+    /// An expression is zero.
+    Expression(Expression),
     /// Somebody else's function is zero.
     Function(Function),
 }
@@ -87,6 +92,7 @@ impl fmt::Debug for What {
             Self::Apsis { body, about } => write!(formatter, "Apsis({body}, {about:?})"),
             Self::Energy(value) => write!(formatter, "Energy({value:?})"),
             Self::Contact(_) => write!(formatter, "Contact"),
+            Self::Expression(expression) => write!(formatter, "Expression({:?})", expression.bodies),
             Self::Function(_) => write!(formatter, "Function"),
         }
     }
@@ -146,6 +152,8 @@ pub struct Surroundings<'a> {
     pub bodies: &'a [usize],
     /// Whether only some bodies of the copy are there, all those that have a mass among them.
     pub massive: bool,
+    /// The registers of an expression, if they are kept.
+    pub working: Option<&'a RefCell<Working>>,
 }
 
 impl Event {
@@ -155,7 +163,8 @@ impl Event {
             What::Distance { bodies: (i, j), .. } => Some(vec![*i, *j]),
             What::Plane { body, .. } | What::Apsis { body, about: Focus::Point(_) } => Some(vec![*body]),
             What::Apsis { body, about: Focus::Body(other) } => Some(vec![*body, *other]),
-            What::Energy(_) | What::Contact(_) | What::Function(_) => None,
+            What::Expression(Expression { bodies, .. }) if !bodies.is_empty() => Some(bodies.clone()),
+            What::Energy(_) | What::Contact(_) | What::Expression(_) | What::Function(_) => None,
         }
     }
 
@@ -194,6 +203,7 @@ impl Event {
         let mut sight = self.sight_of(view.bodies, places, &origin);
         match &self.what {
             What::Distance { .. } | What::Plane { .. } | What::Apsis { .. } | What::Contact(_) => {}
+            What::Expression(expression) => sight.value = expression.value(view, places, &origin, around),
             What::Energy(level) => sight.value = energy(view, around, ticker)? - level,
             What::Function(function) => sight.value = call(function, view, around)?,
         }
@@ -209,7 +219,7 @@ impl Event {
                 What::Plane { point, .. } => size(*point) + size(sight.distance),
                 What::Apsis { .. } => size(sight.distance) * size(sight.velocity),
                 What::Energy(level) => level.abs(),
-                What::Contact(_) | What::Function(_) => 0.0,
+                What::Contact(_) | What::Expression(_) | What::Function(_) => 0.0,
             }
     }
 
@@ -248,7 +258,8 @@ impl Event {
                 });
             }
         }
-        if let Some([i, j]) = self.looks_at().as_deref()
+        let is_of_two = !matches!(self.what, What::Expression(_));
+        if let (true, Some([i, j])) = (is_of_two, self.looks_at().as_deref())
             && i == j
         {
             return refused(format!("expected two bodies, got {i} twice"));

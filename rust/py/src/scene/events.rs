@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use visviva_core::scene::events::{Event, Focus, Function, What};
+use visviva_core::scene::events::{Event, Expression, Focus, Function, What};
 use visviva_core::scene::unit::Turned;
 use visviva_core::{Error, Result};
 
@@ -103,6 +103,12 @@ fn event(
             What::Apsis { body: item("body")?.extract()?, about }
         }
         "energy" => What::Energy(item("value")?.extract()?),
+        "expression" => {
+            let nodes: Vec<f64> = item("nodes")?.extract()?;
+            let coordinates: Vec<(usize, usize)> = item("coordinates")?.extract()?;
+            let read = Expression::read(&nodes, &coordinates);
+            What::Expression(read.map_err(|error| raised(description.py(), error))?)
+        }
         "function" => {
             let given = Arc::new(AtomicBool::new(false));
             functions.numbers.push((place, given.clone()));

@@ -8,17 +8,16 @@
 
 mod cubic;
 mod search;
-mod shape;
 
 use super::Model;
 use super::sticking::along;
 use crate::error::Result;
 use crate::expressions::intervals::Intervals;
+use crate::expressions::shape::Shape;
 use crate::expressions::{Code, Id, Machine, narrow};
 use core::fmt;
 pub(super) use search::INSIDE;
 use search::{Point, Search, rounding};
-use shape::Shape;
 use std::sync::Arc;
 
 /// A function of time and state that somebody else evaluates.

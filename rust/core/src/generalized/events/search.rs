@@ -4,12 +4,12 @@
 //! the cubic through its ends; a part that is not is cut in two. A part that is understood has no zeros if the cubic keeps
 //! clear of it by more than it errs; else the function is looked at where the cubic turns, and what changes its sign between
 //! two such points, or comes down towards zero from both, is located on the solution itself. Where something may hide between
-//! looks ([`Shape`](super::shape::Shape)) a part is cut before any of that is asked.
+//! looks ([`Shape`](crate::expressions::shape::Shape)) a part is cut before any of that is asked.
 
 use super::cubic::Cubic;
-use super::shape::Told;
 use super::{Interval, Working};
 use crate::error::{Error, Result};
+use crate::expressions::shape::Told;
 use crate::ode::events::{before_the_first, zero};
 
 /// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.

@@ -108,7 +108,10 @@ fn about_point<S: Real>(body: &Moving<S>, point: [f64; 3], origin: &Moved) -> [[
 impl Event {
     /// Whether it looks at where a body is in the scene, and not by another body.
     pub fn asks_where(&self) -> bool {
-        matches!(self.what, What::Plane { .. } | What::Apsis { about: Focus::Point(_), .. })
+        match &self.what {
+            What::Expression(expression) => expression.asks_where(),
+            what => matches!(what, What::Plane { .. } | What::Apsis { about: Focus::Point(_), .. }),
+        }
     }
 
     /// Whether its rate follows from what it sees.
@@ -163,7 +166,11 @@ impl Event {
         match &self.what {
             What::Distance { .. } => Some(S::splat(2.0) * dot(*distance, *velocity)),
             What::Plane { normal, .. } => Some(dot(splat(*normal), *velocity)),
-            What::Apsis { .. } | What::Energy(_) | What::Contact(_) | What::Function(_) => None,
+            What::Apsis { .. }
+            | What::Energy(_)
+            | What::Contact(_)
+            | What::Expression(_)
+            | What::Function(_) => None,
         }
     }
 
@@ -185,7 +192,7 @@ impl Event {
                 }
                 Some([dot(v0, v0) + dot(x0, a0), dot(v1, v1) + dot(x1, a1)])
             }
-            What::Energy(_) | What::Contact(_) | What::Function(_) => None,
+            What::Energy(_) | What::Contact(_) | What::Expression(_) | What::Function(_) => None,
         }
     }
 }

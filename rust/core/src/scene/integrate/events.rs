@@ -11,6 +11,8 @@ mod beyond;
 mod bodies;
 mod clear;
 mod contacts;
+mod expressions;
+mod expressions_in_lanes;
 mod inside;
 mod nearest;
 mod search;
@@ -21,7 +23,7 @@ mod touching;
 mod turning;
 mod turns;
 
-use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What};
+use super::super::events::{Event, Known, Moving, Sight, Surroundings, View, What, Working};
 use super::super::unit::{Prepared, Turned};
 use super::Job;
 use crate::error::Result;
@@ -34,6 +36,7 @@ pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use contacts::{Contacts, Pair};
+use core::cell::RefCell;
 pub(super) use step::{Interpolant, Span};
 use turning::Turns;
 
@@ -59,6 +62,8 @@ pub(super) struct Watch<'a> {
     job: &'a Job<'a>,
     /// Their places among all events, and those of their bodies among the ones that are looked at.
     events: Vec<(usize, Vec<usize>)>,
+    /// Of each that is an expression what it works with.
+    working: Vec<Option<RefCell<Working>>>,
     bodies: Bodies,
     /// The spheres that may touch, and the pairs that may do so in the step at hand, which follow the events.
     contacts: Option<Contacts>,
@@ -134,9 +139,15 @@ impl<'a> Watch<'a> {
                 _ => events.push((index, places)),
             }
         }
+        let working = events.iter().map(|(index, _)| match &plan.events[*index].what {
+            What::Expression(expression) => Some(RefCell::new(Working::new(expression))),
+            _ => None,
+        });
+        let working = working.collect();
         let at_rest = vec![Moving::default(); slots.len()];
         let mut watch = Self {
             job,
+            working,
             bodies: Bodies::new(job, unit, &slots, (state, lane)),
             contacts: None,
             pairs: Vec::new(),
@@ -236,6 +247,7 @@ impl<'a> Watch<'a> {
             copy: unit.unit.copy,
             bodies: &self.bodies.indices,
             massive: self.massive,
+            working: self.working.get(event).and_then(Option::as_ref),
         };
         let (event, places) = self.event(event);
         event.sight(&view, places, &around, ticker)
@@ -260,9 +272,13 @@ impl<'a> Watch<'a> {
             let sight = self.sight(unit, event, (&self.after, span.to), ticker)?;
             let ends = [&self.sights[event], &sight];
             let rates = if self.is_kept(event) { Some([0.0; 2]) } else { self.event(event).0.rates(ends, h) };
-            let clear = rates.is_some_and(|rates| {
-                let cubic = cubic(ends.map(|end| end.value), rates, h);
-                keeps_clear(cubic) || keeps_clear_after_all(cubic)
+            let values = ends.map(|end| end.value);
+            let expressed = self.expression_keeps_clear(unit, (event, values), span, h);
+            let clear = expressed.unwrap_or_else(|| {
+                rates.is_some_and(|rates| {
+                    let cubic = cubic(values, rates, h);
+                    keeps_clear(cubic) || keeps_clear_after_all(cubic)
+                })
             });
             if !clear {
                 self.suspects.push(event);

@@ -271,7 +271,7 @@ impl Recorder<Lanes> for Records<'_> {
     }
 
     fn suspects(&mut self, steps: usize) -> Bits {
-        self.along.as_ref().map_or(Bits(0xff), |along| along.suspects(steps))
+        self.along.as_mut().map_or(Bits(0xff), |along| along.suspects(steps))
     }
 
     fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {

@@ -86,6 +86,7 @@ fn value(what: &What, scene: &Scene, ticker: &mut Ticker<'_>) -> Result<Option<f
             let (kinetic, potential) = energy_of(scene, 0, state, &mut PreciseBodies::default(), ticker)?;
             Some(kinetic.plus(potential).to_f64() - level)
         }
+        What::Expression(expression) => Some(expression.value_of(scene.t0, position, velocity)),
         What::Function(function) => {
             // Spheres that collide are no rigid bodies.
             Some((function.call)(scene.t0, position.as_flattened(), velocity.as_flattened(), &[])?)

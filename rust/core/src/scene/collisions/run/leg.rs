@@ -78,6 +78,7 @@ impl Remaining {
                 What::Apsis { body: place(body), about: Focus::Body(place(other)) }
             }
             What::Apsis { body, about } => What::Apsis { body: place(body), about: about.clone() },
+            What::Expression(expression) => What::Expression(expression.of(place)),
             What::Function(function) if self.some_have_gone() => What::Function(self.with_all(function)),
             What::Energy(_) | What::Contact(_) | What::Function(_) => what.clone(),
         })

@@ -3,6 +3,7 @@
 
 use super::super::super::events::{Event, Moving, Sight};
 use super::clear::{cubic, keeps_clear};
+use super::expressions_in_lanes::ExpressionAbreast;
 use super::spheres_abreast::SpheresAbreast;
 use super::{Bodies, Watch};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -15,6 +16,9 @@ use crate::tiered;
 /// The events of eight units of one make-up, one in each lane. Those of the first are told side by side.
 pub(in super::super) struct Abreast<'a> {
     events: Vec<Seen<'a>>,
+    expressions: Vec<ExpressionAbreast>,
+    /// Whether any event asks where a body is in the scene.
+    asks_where: bool,
     /// The spheres that may touch.
     spheres: Option<SpheresAbreast>,
     bodies: Bodies,
@@ -43,8 +47,14 @@ impl<'a> Abreast<'a> {
             None => None,
         };
         let mut events = Vec::with_capacity(watch.events.len());
+        let (mut expressions, mut asks_where) = (Vec::new(), false);
         for index in 0..watch.events.len() {
             let (event, bodies) = watch.own_event(index);
+            asks_where |= event.asks_where();
+            if let Some(expression) = ExpressionAbreast::of(event, bodies, &watch.bodies) {
+                expressions.push(expression);
+                continue;
+            }
             let (&first, &last) = (bodies.first()?, bodies.last()?);
             if !event.has_rates() {
                 return None;
@@ -53,7 +63,17 @@ impl<'a> Abreast<'a> {
         }
         let sights = vec![Sight::default(); events.len()];
         let (bodies, watched) = (watch.bodies.clone(), watch.events.clone());
-        Some(Self { events, spheres, bodies, sights, fresh: Bits(0), one_by_one: Bits(0xff), watched })
+        Some(Self {
+            events,
+            expressions,
+            asks_where,
+            spheres,
+            bodies,
+            sights,
+            fresh: Bits(0),
+            one_by_one: Bits(0xff),
+            watched,
+        })
     }
 
     /// A unit begins in a lane.
@@ -64,7 +84,7 @@ impl<'a> Abreast<'a> {
         if let (Some(spheres), Some(contacts)) = (&mut self.spheres, &watch.contacts) {
             spheres.begin(lane, contacts, watch.bodies.factors[0]);
         }
-        let moved = unit.origin.is_elsewhere() && self.events.iter().any(|seen| seen.event.asks_where());
+        let moved = unit.origin.is_elsewhere() && self.asks_where;
         if moved || watch.events != self.watched {
             self.one_by_one = self.one_by_one.or(bit);
         }
@@ -75,7 +95,10 @@ impl<'a> Abreast<'a> {
     pub(in super::super) fn step(&mut self, lanes: Bits, h: &Lanes, state: &State<Lanes>) -> [Bits; 2] {
         let fresh = self.fresh.and(lanes);
         self.fresh = self.fresh.and(lanes.not());
-        let suspects = suspects(self, lanes, h, state);
+        let mut suspects = suspects(self, lanes, h, state);
+        for expression in &mut self.expressions {
+            suspects = suspects.or(expression.suspects(lanes, h, &self.bodies, state));
+        }
         // Those that are looked at on every step have seen every node.
         [suspects.or(fresh).or(self.one_by_one).and(lanes), fresh.or(self.one_by_one)]
     }

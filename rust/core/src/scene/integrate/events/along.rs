@@ -4,18 +4,20 @@
 use super::super::super::events::{Event, Sight};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
+use super::expressions_in_lanes::ExpressionAlong;
 use super::spheres::{Spheres, eight};
 use super::{Bodies, Watch};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Mask;
 use crate::ode::state::State;
-use crate::scene::frame::Origin;
+use crate::scene::frame::{Moved, Origin};
 use crate::tiered;
 
 /// The events of a unit, and what they are functions of at nine nodes: steps lie in the lanes.
 pub(in super::super) struct Along<'a> {
     events: Vec<Seen<'a>>,
+    expressions: Vec<ExpressionAlong>,
     /// The spheres that may touch.
     spheres: Option<Spheres>,
     bodies: Bodies,
@@ -63,8 +65,13 @@ impl<'a> Along<'a> {
             None => None,
         };
         let mut events = Vec::with_capacity(watch.events.len());
+        let mut expressions = Vec::new();
         for index in 0..watch.events.len() {
             let (event, bodies) = watch.own_event(index);
+            if let Some(expression) = ExpressionAlong::of(event, bodies) {
+                expressions.push(expression);
+                continue;
+            }
             if !event.has_rates() {
                 return None;
             }
@@ -73,7 +80,7 @@ impl<'a> Along<'a> {
             events.push(Seen { event, bodies, vectors, asks_where: event.asks_where() });
         }
         let unit_of_time = watch.job.plan.units.time;
-        Some(Self { events, spheres, bodies: watch.bodies.clone(), step, unit_of_time })
+        Some(Self { events, expressions, spheres, bodies: watch.bodies.clone(), step, unit_of_time })
     }
 
     /// Takes note in one of nine places of how the bodies move at a node, to which so many steps have led.
@@ -81,6 +88,9 @@ impl<'a> Along<'a> {
     pub(in super::super) fn note(&mut self, place: usize, unit: &Prepared, node: u64, state: &State<Lanes>) {
         if let Some(spheres) = &mut self.spheres {
             spheres.note(place, &self.bodies, state);
+        }
+        if !self.expressions.is_empty() {
+            self.note_expressions(place, unit, node, state);
         }
         for seen in &mut self.events {
             if seen.asks_where {
@@ -99,8 +109,21 @@ impl<'a> Along<'a> {
         }
     }
 
+    /// A function of its own, as [`Seen::note_where`].
+    #[inline(never)]
+    fn note_expressions(&mut self, place: usize, unit: &Prepared, node: u64, state: &State<Lanes>) {
+        for expression in &mut self.expressions {
+            let origin = if expression.asks_where {
+                unit.origin.at(scale(self.step * node as f64, self.unit_of_time))
+            } else {
+                Moved::NOWHERE
+            };
+            expression.note(place, &origin, &self.bodies, state);
+        }
+    }
+
     /// The steps, of so many between those nodes, in which there may be zeros.
-    pub(in super::super) fn suspects(&self, steps: usize) -> Bits {
+    pub(in super::super) fn suspects(&mut self, steps: usize) -> Bits {
         let h = scale(self.step, self.unit_of_time);
         let mut suspects = self.spheres.as_ref().map_or(Bits(0), |spheres| spheres.suspects(self.step));
         let mut cubics = [Lanes([0.0; WIDTH]); 4];
@@ -112,6 +135,9 @@ impl<'a> Along<'a> {
                     suspects = suspects.or(Bits(1 << step));
                 }
             }
+        }
+        for expression in &mut self.expressions {
+            suspects = suspects.or(expression.suspects(steps, h));
         }
         suspects
     }

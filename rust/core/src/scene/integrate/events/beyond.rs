@@ -178,7 +178,7 @@ impl Watch<'_> {
         told: &Told<'_>,
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
-        if !matches!(self.event(event).0.what, What::Function(_)) {
+        if !matches!(self.event(event).0.what, What::Function(_) | What::Expression(_)) {
             return self.rounding_as_told(unit, event, seen, told, ticker);
         }
         let change = self.nudged(unit, event, seen, (told, NUDGE), ticker)?;

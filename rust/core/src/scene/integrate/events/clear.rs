@@ -4,7 +4,7 @@ use crate::numerics::real::{Mask, Real};
 
 /// How far a function may differ from the cubic in the middle of a step, as a part of the range of the cubic. Towards the ends
 /// it is less, as the values there are the same, and the rates.
-const CLEARANCE: f64 = 0.5;
+pub(super) const CLEARANCE: f64 = 0.5;
 
 /// How far the rates may be off, as a part of that range in the time of a step.
 const SLANT: f64 = 0.125;

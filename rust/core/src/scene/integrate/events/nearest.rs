@@ -42,7 +42,10 @@ impl Search<'_, '_> {
 
     /// Whether its value is told by positions alone.
     pub(super) fn is_of_positions(&self) -> bool {
-        self.is_distance() || matches!(self.watch.event(self.event).0.what, What::Plane { .. })
+        match &self.watch.event(self.event).0.what {
+            What::Expression(expression) => !expression.formula.looks_at_velocities,
+            what => matches!(what, What::Distance { .. } | What::Plane { .. }),
+        }
     }
 
     /// Where a value that is nearest to zero between two points of the same sign, of which this is the first, passes zero

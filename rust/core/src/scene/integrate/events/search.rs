@@ -229,7 +229,7 @@ impl Search<'_, '_> {
         let mut parts = (FEWEST * length / run).ceil().min(FEWEST);
         let mut samples = SAMPLES.to_vec();
         let event = self.watch.event(self.event).0;
-        let is_known = !matches!(event.what, What::Function(_));
+        let is_known = !matches!(event.what, What::Function(_) | What::Expression(_));
         if let (true, Some(turns)) = (event.sees_turning(), &self.watch.turns) {
             parts = parts.max(turns.parts(length)?);
         }
@@ -245,13 +245,8 @@ impl Search<'_, '_> {
     /// Where the function is zero, and its slope there, if it goes almost straight from one sign to the other: told from the
     /// ends of the step and its middle.
     fn straight(&mut self, ticker: &mut Ticker<'_>) -> Result<Option<(f64, f64)>> {
-        let watch = &*self.watch;
         let h = self.length();
-        let Some(rates) =
-            watch.event(self.event).0.rates([&watch.sights[self.event], &watch.next[self.event]], h)
-        else {
-            return Ok(None);
-        };
+        let Some(rates) = self.watch.rates(self.event, h) else { return Ok(None) };
         let cubic = cubic(self.ends, rates, h);
         if !is_straight(cubic) {
             return Ok(None);

@@ -3,7 +3,7 @@
 //! The one idea: a few looks tell a function only where nothing narrow hides between them, and none are needed where it is nowhere
 //! zero. Bounds over the box of the states tell both; those over a wider box hold for some steps more.
 
-use crate::expressions::intervals::{Interval, Intervals};
+use super::intervals::{Interval, Intervals};
 use std::sync::Arc;
 
 /// How far states may be beyond those that are known, as a part of how far these are apart.
@@ -15,7 +15,7 @@ const WAIT: u32 = 16;
 
 /// What is told of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Told {
+pub enum Told {
     /// The function is nowhere zero.
     Clear,
     /// A few looks tell it.
@@ -32,7 +32,8 @@ struct Region {
 }
 
 /// The bounds of a function.
-pub(super) struct Shape {
+#[derive(Clone, Debug)]
+pub struct Shape {
     intervals: Intervals,
     parameters: Vec<f64>,
     here: Region,
@@ -68,7 +69,7 @@ impl Region {
 
 impl Shape {
     /// Of a function with these parameters.
-    pub(super) fn new(intervals: &Arc<Intervals>, parameters: &[f64]) -> Self {
+    pub fn new(intervals: &Arc<Intervals>, parameters: &[f64]) -> Self {
         Self {
             intervals: (**intervals).clone(),
             parameters: parameters.to_vec(),
@@ -80,7 +81,7 @@ impl Shape {
     }
 
     /// What the function does between two times, on a way through three states.
-    pub(super) fn told(&mut self, [from, to]: [f64; 2], states: [&[f64]; 3]) -> Told {
+    pub fn told(&mut self, [from, to]: [f64; 2], states: [&[f64]; 3]) -> Told {
         let [first, middle, last] = states;
         self.here.time = Interval::between(from, to);
         self.here.state.clear();
@@ -89,13 +90,26 @@ impl Shape {
             let beyond = BEYOND * (high - low);
             Interval::between(low - beyond, high + beyond)
         }));
+        self.told_here(|told| told != Told::Narrow)
+    }
+
+    /// Whether the function is nowhere zero between two times, while the state is in a box.
+    pub fn is_clear(&mut self, time: Interval, state: impl Iterator<Item = Interval>) -> bool {
+        self.here.time = time;
+        self.here.state.clear();
+        self.here.state.extend(state);
+        self.told_here(|told| told == Told::Clear) == Told::Clear
+    }
+
+    /// What is told here, and of a wider region if that is enough there.
+    fn told_here(&mut self, is_enough: fn(Told) -> bool) -> Told {
         if self.known.holds(&self.here) {
             return self.told;
         }
         if self.wait == 0 {
             let wider = self.here.wider(WIDER);
             let told = told(&mut self.intervals, &wider, &self.parameters);
-            if told != Told::Narrow {
+            if is_enough(told) {
                 (self.known, self.told) = (wider, told);
                 return told;
             }
