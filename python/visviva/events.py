@@ -1,15 +1,14 @@
 """Events: what is looked for on the way of a run; the table of what was found is in `_event_table.py`.
 
-`distance`, `plane`, `apsis` and `energy` are compiled, and so is what an `expression` says of time, positions and
-velocities; any other function of them may be given as it is, or by `function` with a direction and an end, and is asked
-in Python. Events are located on the solution between the steps and change no bit of a run; one that is ``terminal``
-ends it.
+`distance`, `plane`, `apsis`, `energy` and what an `expression` says of time, positions and velocities are compiled; any
+other function may be given as it is, or by `function` with a direction and an end, and is asked in Python. Events are
+located on the solution between the steps and change no bit of a run; one that is ``terminal`` ends it.
 
 `coordinate` is of runs in generalized coordinates, which take `expression`, `energy` and `function`, too.
 
 A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
-step and turns, it is followed down, so that two zeros in one step are found. What a collision makes jump from one sign
-to the other is an event at the time of the collision, with the state after it: energies, apsides and functions.
+step and turns, it is followed down: two zeros in one step are found. What a collision makes jump from one sign to the
+other is an event at its time, with the state after it: energies, apsides, functions and expressions.
 
 The state at a terminal event is on the far side of the zero, by a rounding. A run that goes on from there is away from
 it and does not find it again; one whose velocity was turned round, to bounce, comes back through it at once, and finds
@@ -128,18 +127,14 @@ def plane(
     >>> bool(abs(out.events.position[:, 1, 1]).max() < 1e-12)
     True
 
-    A ball that bounces, by a run for each flight. It hits the floor on the way down: the way up, at the start of a
-    flight, is no event.
+    A ball that bounces, by a run for each flight: the way up, at the start of a flight, is no event.
 
     >>> floor = vv.events.plane([0, 0, 0], [0, 0, 1], direction=-1, terminal=True)
     >>> ball = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 5.0]]), vv.UniformField([0.0, 0.0, -10.0]))
-    >>> for _ in range(3):
-    ...     hit = ball.run(t=ball.t0 + 10.0, events=[floor]).final
-    ...     print(f"{hit.t0:.9f}")
-    ...     ball = hit.with_state(velocity=-0.5 * hit.particles.velocity)
-    1.000000000
-    2.000000000
-    2.500000000
+    >>> hit = ball.run(t=10.0, events=[floor]).final
+    >>> again = hit.with_state(velocity=-0.5 * hit.particles.velocity).run(t=10.0, events=[floor]).final
+    >>> round(hit.t0, 9), round(again.t0, 9)
+    (1.0, 2.0)
     """
     through, perpendicular = point_of("point", point), point_of("normal", normal)
     if not any(perpendicular):
@@ -270,14 +265,13 @@ def expression(
     Raises
     ------
     visviva.InvalidInput
-        For what is neither an expression nor a function, or a direction or an end that is none of these. Whether the
-        core knows the expression is looked at when it is run.
+        For what is neither an expression nor a function, or a direction or an end that is none of these; when it is
+        run, for what the core does not know.
 
     Notes
     -----
-    It may do arithmetic and take NumPy's functions, and must not branch: what must is for `function`. In a scene it
-    costs a tenth of that or less, holds no lock, and runs in all threads; a result keeps what was compiled, so it can
-    be looked for again.
+    It may do arithmetic and take NumPy's functions, and must not branch: what must is for `function`, which costs ten
+    times as much or more, on one thread. A result keeps what was compiled, so it can be looked for again.
 
     Examples
     --------
@@ -291,18 +285,16 @@ def expression(
     >>> len(out.events), bool((out.events.position[:, 1, 1] < 0.0).all())
     (3, True)
 
-    In generalized coordinates:
+    A pendulum turns over, and is as high as its support:
 
-    >>> over = vv.systems.pendulum(position=[0.1], velocity=[7.0])
-    >>> def height(q, v, t, l, **others):
-    ...     return -l * np.cos(q[0])
-    >>> out = over.run(t=10.0, events=[vv.events.expression(height, direction=1, terminal=3)])
+    >>> level = vv.events.expression(lambda q, v, t, l, **others: -l * np.cos(q[0]), direction=1, terminal=3)
+    >>> out = vv.systems.pendulum(position=[0.1], velocity=[7.0]).run(t=10.0, events=[level])
     >>> len(out.events), bool(abs(np.cos(out.events.position)).max() < 1e-14), out.status.name
     (3, True, 'STOPPED')
     """
     if not callable(expression) and not hasattr(expression, "free_symbols"):
-        kind = type(expression).__name__
-        raise InvalidInput("expression", f"expected an expression of SymPy or a function f(q, v, t), got {kind}")
+        came = f"f(t, position, velocity) or f(q, v, t), got {type(expression).__name__}"
+        raise InvalidInput("expression", f"expected an expression of SymPy or a function {came}")
     return make_event("expression", direction, terminal, expression=expression)
 
 
@@ -343,12 +335,7 @@ def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int 
 
 
 @known_keywords
-def function(
-    call: EventFunction,
-    *,
-    direction: EventDirection = 0,
-    terminal: bool | int = False,
-) -> Event:
+def function(call: EventFunction, *, direction: EventDirection = 0, terminal: bool | int = False) -> Event:
     """Your own function passes zero.
 
     It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
@@ -358,9 +345,8 @@ def function(
     Beside rigid bodies one that takes five arguments is called as ``call(t, position, velocity, orientation,
     angular_velocity)``, the last two of shapes (R, 4) and (R, 3), as results have them.
 
-    In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,).
-    Where it is one, an `expression` is better: it is compiled, and in generalized coordinates no zero is missed between
-    two looks.
+    In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,). An
+    `expression` is better where it is one: it is compiled, and no zero is missed there between two looks.
 
     Units: those of the run.
 
