@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import inspect
 import random
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -259,20 +260,24 @@ def event(name: str, seed: int, scene: vv.Scene, span: float) -> vv.events.Event
     raise NotImplementedError(f"tests/combinations/drawing.py cannot draw the event {name!r} yet")
 
 
-def expression(kind: int, pair: list[int], bodies: vv.Particles, later: float) -> Callable[[Any, Any, Any], Any]:
+def expression(kind: int, pair: list[int], bodies: vv.Particles, later: float) -> Callable[..., Any]:
     """What a straight motion passes at a time, by two bodies or one: linear, a root, a square, of speeds, or a wave."""
-    i, j = pair
     place, velocity = bodies.position + later * bodies.velocity, bodies.velocity
-    functions: list[Callable[[Any, Any, Any], Any]] = [
-        lambda t, x, v: x[i, 0] - x[j, 0],
-        lambda t, x, v: np.sqrt((x[i] - x[j]) @ (x[i] - x[j]) + 0.25),
-        lambda t, x, v: x[i] @ x[i] - 0.5 * x[j, 1] ** 2,
-        lambda t, x, v: (x[i] - x[j]) @ (v[i] - 0.5 * v[j]),
-        lambda t, x, v: np.sin(x[i, 0] + x[j, 2]) + np.exp(-(x[i, 1] ** 2)),
+    # Of a module, so that other processes may have it.
+    return partial(_passed, (kind, *pair, float(_passed((kind, *pair, 0.0), later, place, velocity))))
+
+
+def _passed(of: tuple[int, int, int, float], t: Any, position: Any, velocity: Any) -> Any:
+    kind, i, j, level = of
+    x, v = position, velocity
+    functions: list[Callable[[], Any]] = [
+        lambda: x[i, 0] - x[j, 0],
+        lambda: np.sqrt((x[i] - x[j]) @ (x[i] - x[j]) + 0.25),
+        lambda: x[i] @ x[i] - 0.5 * x[j, 1] ** 2,
+        lambda: (x[i] - x[j]) @ (v[i] - 0.5 * v[j]),
+        lambda: np.sin(x[i, 0] + x[j, 2]) + np.exp(-(x[i, 1] ** 2)),
     ]
-    function = functions[kind]
-    level = float(function(later, place, velocity))
-    return lambda t, x, v: function(t, x, v) - level
+    return functions[kind]() - level
 
 
 def _needs_mass(name: str) -> bool:
