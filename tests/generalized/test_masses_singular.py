@@ -144,3 +144,28 @@ def test_singular_masses_that_constraints_make_up_for_are_passed_through() -> No
         np.testing.assert_allclose(out.energy, out.energy[:, :1] + np.zeros(201), rtol=1e-11, atol=0.0)
         # Where the lying hoop turns fast errors grow by a thousand; before, what two methods had in common was 5e-9.
         np.testing.assert_allclose(out.position, runs[0].position, rtol=0.0, atol=2e-9)
+
+
+@pytest.mark.parametrize("light", [1e-6, 1e-9, 1e-12, 1e-16, 1e-18, 1e-30, 1e-300])
+@pytest.mark.parametrize("method", ["auto", "verner98", "dop853", "rk4", "gauss4"])
+def test_two_constraints_of_one_light_coordinate(light: float, method: str) -> None:
+    """A pulley of hardly any mass: from 1e-12 on it ended, or by rk4 was off its constraints by 0.6 with status OK."""
+    m, n, k, g, end = 2.0, 1.0, 1.5, 9.81, 1.0
+    system = vv.Lagrangian(
+        lambda q, v, t: (
+            (m * v[0] ** 2 + n * v[1] ** 2 + k * v[2] ** 2 + light * v[3] ** 2) / 2
+            - g * (m * q[0] + n * q[1] + k * q[2] + light * q[3])
+        ),
+        ["a", "b", "c", "p"],
+        position=[0.0, 0.0, 0.0, 0.0],
+        constraints=[lambda q, v, t: q[0] + q[3], lambda q, v, t: q[1] + q[2] - 2.0 * q[3]],
+    )
+    how = {"dt": 0.002} if method in ("rk4", "gauss4") else {}
+    out = system.run(end, method=method, **how)
+    assert out.status == vv.Status.OK
+    # With the constraints put in by hand, p = -a and c = -2 a - b.
+    masses = np.array([[m + light + 4.0 * k, 2.0 * k], [2.0 * k, n + k]])
+    forces = -g * np.array([m - 2.0 * k - light, n - k])
+    a, b = 0.5 * end**2 * np.linalg.solve(masses, forces)
+    # A constant acceleration, which all methods have, to roundings of a few hundred steps.
+    np.testing.assert_allclose(out.position[-1], [a, b, -2.0 * a - b, -a], rtol=0.0, atol=1e-12)

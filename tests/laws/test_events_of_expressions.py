@@ -250,3 +250,54 @@ def test_expressions_of_sympy_are_refused() -> None:
     sp = pytest.importorskip("sympy")
     with pytest.raises(vv.InvalidInput, match=r"events\[0\]: expected a function .* got the expression x - 1 of SymPy"):
         kepler().run(1.0, events=[vv.events.expression(sp.Symbol("x") - 1)])
+
+
+def _thin(width: float, place: float = 0.3) -> dict[str, Callable[..., Any]]:
+    """Functions that are away from zero but within a width of a place."""
+    return {
+        "bump": lambda t, r, v: np.exp(-(((r[0, 0] - place) / width) ** 2)) - 0.5,
+        "Lorentzian": lambda t, r, v: 1.0 / (1.0 + ((r[0, 0] - place) / width) ** 2) - 0.5,
+        "sech": lambda t, r, v: 1.0 / np.cosh((r[0, 0] - place) / width) - 0.5,
+        "box": lambda t, r, v: (
+            np.tanh((r[0, 0] - place) / width + 3.0) - np.tanh((r[0, 0] - place) / width - 3.0) - 1.0
+        ),
+    }
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+@pytest.mark.parametrize("name", ["bump", "Lorentzian", "sech", "box"])
+@pytest.mark.parametrize("how", [{}, {"method": "verner98"}, {"method": "leapfrog", "dt": 0.02}], ids=str)
+def test_what_comes_and_goes_within_a_step_is_seen(how: dict[str, Any], name: str, width: float) -> None:
+    """Of a free body, of which one step may be the whole run: it passes the place once, and the function zero twice."""
+    body = vv.Scene(vv.Particles([1.0], [[-1.0, 0, 0]], [[0.3, 0, 0]]))
+    out = body.run(t=20.0, events=[vv.events.expression(_thin(width)[name])], **how)
+    assert len(out.events) == 2
+    place = out.events.position[:, 0, 0] - 0.3
+    # Both sides of the place, as far from it: to the rounding of places of about 1, times the run's roundings of time.
+    assert place[0] < 0.0 < place[1]
+    assert place.sum() == pytest.approx(0.0, rel=0.0, abs=1e-13)
+    copies = body.ensemble(velocity=[[[0.3, 0, 0]], [[0.6, 0, 0]], [[-0.3, 0, 0]]])
+    found = copies.run(t=20.0, events=[vv.events.expression(_thin(width)[name])], **how)
+    assert np.bincount(found.events.member, minlength=3).tolist() == [2, 2, 0]
+
+
+@pytest.mark.parametrize("rate", [20.0, 30.0, 40.0, 100.0, 1000.0])
+def test_what_turns_fast_in_a_long_step_is_followed(rate: float) -> None:
+    """A sine of the time, of a free body and on an ellipse: of 30 times π up to 600 there were 66 zeros, of 190."""
+    zeros = int(20.0 * rate / np.pi)
+    event = vv.events.expression(lambda t, r, v: np.sin(rate * t))
+    free = vv.Scene(vv.Particles([1.0], [[-1.0, 0, 0]], [[0.3, 0, 0]]))
+    for scene in (free, vv.problems.kepler(e=0.5).scene):
+        found = scene.run(t=20.0, events=[event]).events.t
+        assert len(found) == zeros
+        # Some roundings of the time at the end.
+        np.testing.assert_allclose(found, np.pi / rate * np.arange(1, zeros + 1), rtol=0.0, atol=1e-13)
+
+
+def test_a_thin_function_ends_a_run() -> None:
+    body = vv.Scene(vv.Particles([1.0], [[-1.0, 0, 0]], [[0.3, 0, 0]]))
+    event = vv.events.expression(_thin(1e-4)["bump"], terminal=2)
+    out = body.run(t=20.0, events=[event])
+    assert out.status == vv.Status.STOPPED
+    # Half of the top is √ln 2 widths after it.
+    assert out.final.particles.position[0, 0] - 0.3 == pytest.approx(1e-4 * np.sqrt(np.log(2.0)), rel=0.0, abs=1e-13)

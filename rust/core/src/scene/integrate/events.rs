@@ -13,6 +13,7 @@ mod clear;
 mod contacts;
 mod expressions;
 mod expressions_in_lanes;
+mod halves;
 mod inside;
 mod nearest;
 mod search;

@@ -32,12 +32,7 @@ impl Watch<'_> {
         working.rates = None;
         let Working { ends: [before, after], shape, .. } = &mut *working;
         if let Some(shape) = shape {
-            let n = before.len() / 3;
-            let states = (0..2 * n).map(|index| {
-                let (at, velocity) = (index % n, n + index % n);
-                let (x, v) = ([before[at], after[at]], [before[velocity], after[velocity]]);
-                if index < n { place_between(x, v, h) } else { velocity_between(x, v, h) }
-            });
+            let states = between(before, after, h);
             return Some(shape.is_clear(Interval::between(times[0], times[1]), states));
         }
         working.accelerate(h);
@@ -56,6 +51,20 @@ impl Watch<'_> {
             None => self.event(event).0.rates([&self.sights[event], &self.next[event]], h),
         }
     }
+}
+
+/// Where the coordinates and velocities of an expression are in a step `h`, from what they are at both ends.
+pub(super) fn between<'a>(
+    before: &'a [f64],
+    after: &'a [f64],
+    h: f64,
+) -> impl Iterator<Item = Interval> + 'a {
+    let n = before.len() / 3;
+    (0..2 * n).map(move |index| {
+        let (at, velocity) = (index % n, n + index % n);
+        let (x, v) = ([before[at], after[at]], [before[velocity], after[velocity]]);
+        if index < n { place_between(x, v, h) } else { velocity_between(x, v, h) }
+    })
 }
 
 /// Where a coordinate is in a step: between the coefficients of the cubic, or beyond by what a motion may leave it.

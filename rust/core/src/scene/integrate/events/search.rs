@@ -131,7 +131,11 @@ impl Search<'_, '_> {
         let [start, end] =
             [&self.watch.sights[self.event], &self.watch.next[self.event]].map(|sight| self.rate(sight));
         let (mut points, mut rates) = (vec![(0.0, self.ends[0])], vec![start]);
-        for theta in self.samples()? {
+        let mut samples = self.samples()?;
+        samples.extend(self.may_be_zero_between(ticker)?);
+        samples.sort_by(f64::total_cmp);
+        samples.dedup();
+        for theta in samples {
             let sight = self.sight_on_the_way(theta, step, ticker)?;
             points.push((theta, sight.value));
             rates.push(self.rate(&sight));
