@@ -161,19 +161,21 @@ fn degree(graph: &Graph, root: Id) -> Option<u32> {
     degrees.get(&root).copied()
 }
 
-/// Whether nothing changes where all places, or all velocities, change by the same.
+/// Whether nothing changes where all places, or all velocities, change by the same: its rate is nothing then.
 fn is_relative(graph: &mut Graph, root: Id, coordinates: &[(usize, usize)]) -> bool {
-    let n = coordinates.len();
-    let variables: Vec<Id> = (0..2 * n as u32).map(|index| graph.variable(index)).collect();
-    let slopes = graph.gradient(root, &variables);
-    (0..3).all(|axis| {
-        slopes.chunks(n.max(1)).all(|slopes| {
-            let along = slopes.iter().zip(coordinates).filter(|(_, of)| of.1 == axis);
-            let terms: Vec<(f64, Id)> = along.map(|(&slope, _)| (1.0, slope)).collect();
-            let sum = graph.sum(0.0, &terms);
-            graph.is_zero(sum)
-        })
-    })
+    let (n, one) = (coordinates.len(), graph.constant(1.0));
+    for axis in 0..3 {
+        for first in [0, n] {
+            let along = (0..n).filter(|&index| coordinates[index].1 == axis);
+            let all: FxHashMap<Id, Id> =
+                along.map(|index| (graph.variable((first + index) as u32), one)).collect();
+            let rate = graph.tangent(&[root], &all);
+            if !rate.iter().all(|&rate| graph.is_zero(rate)) {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 /// The accelerations at both ends of a step `h`, of the cubic through places and velocities there.
