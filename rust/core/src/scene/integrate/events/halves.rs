@@ -4,7 +4,6 @@
 //! often as the share of the run that the step is allows, and what is left at last is sampled at its ends. What is thin or fast in
 //! a long step is seen so, and a step in which nothing may be zero costs nothing more.
 
-use super::super::super::events::Working;
 use super::expressions::between;
 use super::search::Search;
 use crate::error::Result;
@@ -26,9 +25,8 @@ type Place = (f64, Vec<f64>);
 impl Search<'_, '_> {
     /// Places between which the event may be zero in the step, if it is an expression that has bounds; none of another kind.
     pub(super) fn may_be_zero_between(&mut self, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
-        let bounded = |working: &Working| working.shape.is_some();
         let working = self.watch.working.get(self.event).and_then(Option::as_ref);
-        if !working.is_some_and(|working| bounded(&working.borrow())) {
+        if working.is_none_or(|working| working.borrow().shape.is_none()) {
             return Ok(Vec::new());
         }
         let (job, length) = (self.watch.job, self.length().abs());
