@@ -254,9 +254,13 @@ impl Trial<Lanes> for GaussEight {
         }
         let missed = self.missed(t + h, h, running);
         let mut errors = Lanes::zero();
+        for (pace, missed) in self.paces.iter_mut().zip(missed.0) {
+            pace.missed = missed;
+        }
+        let unfallen = self.unfallen(h, running);
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let pace = &mut self.paces[lane];
-            pace.missed = missed.0[lane];
+            pace.unfallen = unfallen[lane];
             if pace.refuses(self.steps, &self.beyond.ending) {
                 errors.0[lane] = 4.0;
                 if matches!(self.steps, Steps::Equal(_)) {

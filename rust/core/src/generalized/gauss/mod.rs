@@ -2,7 +2,7 @@
 //!
 //! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
 //! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
-//! in the next one; where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
+//! in the next one and by whether its terms fall ([`decay`]); where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
 //! by what will push it ([`rest`]), and rounding by nothing
 //! ([`rounding`], [`noise`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
 //! alone.
@@ -10,6 +10,7 @@
 mod changes;
 mod columns;
 mod columns_end;
+mod decay;
 mod eight;
 mod ending;
 mod noise;
@@ -66,6 +67,8 @@ pub struct Method {
 #[derive(Debug)]
 struct Beyond {
     ending: Ending,
+    /// See [`decay::coefficients`].
+    coefficients: Option<[Lanes; WIDTH]>,
     rounding: Rounding,
 }
 
@@ -78,7 +81,11 @@ pub static METHODS: [Method; 3] = [
 
 impl Method {
     fn beyond(&'static self) -> &'static Beyond {
-        let found = || Beyond { ending: Ending::of(self.table), rounding: Rounding::of(self.table) };
+        let found = || Beyond {
+            ending: Ending::of(self.table),
+            coefficients: decay::coefficients(self.table),
+            rounding: Rounding::of(self.table),
+        };
         self.beyond.get_or_init(found)
     }
 

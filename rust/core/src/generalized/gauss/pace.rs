@@ -7,7 +7,7 @@
 
 use super::super::ahead_of_forces::{FREE, LONGEST_FREE};
 use super::Table;
-use super::ending::Ending;
+use super::ending::{Ending, is_little};
 use crate::numerics::elementary::{self, Exponential};
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::real::Real;
@@ -70,6 +70,8 @@ pub(super) struct Pace {
     pub(super) converged: bool,
     /// By how much the rates at its end are not what the stages lead to.
     pub(super) missed: f64,
+    /// How large the last terms of its polynomial are, where they do not fall as those of smooth motions.
+    pub(super) unfallen: f64,
     /// By how much it changed velocities, as a part of them.
     pub(super) felt: f64,
     /// The longest step that feels nothing.
@@ -114,7 +116,8 @@ impl Pace {
                 // It passes through zero at times.
                 let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
                 let strays = self.unresolved().is_some() || self.strays(delta, band);
-                !self.converged || strays || ending.met(self.missed, astray, tolerance)
+                let rough = !is_little(self.unfallen, tolerance);
+                !self.converged || strays || rough || ending.met(self.missed, astray, tolerance)
             }
         }
     }
@@ -127,6 +130,11 @@ impl Pace {
     /// Whether it is to be asked how much a step misses: of one that δ does not refuse.
     pub(super) fn missable(&self, steps: Steps) -> bool {
         matches!(steps, Steps::Chosen { delta, band, .. } if self.converged && !self.strays(delta, band))
+    }
+
+    /// Whether it is to be asked whether the terms of a step's polynomial fall.
+    pub(super) fn may_be_rough(&self, steps: Steps) -> bool {
+        matches!(steps, Steps::Chosen { tolerance, .. } if !is_little(self.missed, tolerance))
     }
 
     /// Whether δ is out of the band.

@@ -1,7 +1,8 @@
 //! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
 //! stages, and what lies between these unseen.
 
-use super::super::told::{missed, smoothness};
+use super::super::decay::unfallen;
+use super::super::told::{led, missed, smoothness};
 use super::GaussEight;
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -48,6 +49,25 @@ impl GaussEight {
             for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
                 let (begun, most) = (begun.0[lane], &mut most.0[lane]);
                 *most = if begun <= *most { *most } else { begun };
+            }
+        }
+        most
+    }
+
+    /// How large the last terms of the polynomials of steps are, as parts of sizes, where they do not fall.
+    pub(super) fn unfallen(&mut self, h: Lanes, running: Bits) -> [f64; WIDTH] {
+        let mut most = [0.0; WIDTH];
+        let asked = self.lanes(|_, pace| pace.may_be_rough(self.steps)).and(running);
+        let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return most };
+        // What a shadow step would begin with is of nobody before there is one.
+        let (columns, coefficients) = (&self.columns, &mut self.shadow.guess);
+        led(rows, self.table.stages, &columns.rates, coefficients);
+        for (lane, most) in most.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
+            let limit = columns.limit(lane);
+            for (i, row) in coefficients.iter().enumerate() {
+                let last = unfallen(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
+                let part = last * h.0[lane].abs() * Real::min(columns.scales[i].0[lane], limit);
+                *most = if part > *most { part } else { *most };
             }
         }
         most
