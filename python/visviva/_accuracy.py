@@ -187,8 +187,8 @@ def _warn_of_turn(result: dict[str, Any], *, ensemble: bool) -> None:
     copy, (body, place), steps, fewest, at_pericenter = result["too_long"]
     tight = ", as tight as at its pericenter," if at_pericenter else ""
     whose = f"in copy {copy}, " if ensemble else ""
-    # A turn may take no time beside a step.
-    shorter = f"a step that is {fewest / steps:.2g} times shorter or less, or " if steps > 0.0 else ""
+    # A turn may take no time beside a step, or a step be hardly too long.
+    shorter = f"a step that is {max(fewest / steps, 1.1):.2g} times shorter or less, or " if steps > 0.0 else ""
     message = (
         f"{whose}a turn of body {body} {place}{tight} has {steps:.3g} steps, and the method "
         f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, verner98)"

@@ -15,9 +15,9 @@ from visviva import _core
 from visviva._arrays import whole_number
 from visviva._html import Shown
 from visviva._keywords import known_keywords
+from visviva._sizes_of_motions import looked_at, sizes_of_motions
 from visviva._text import short_repr, table
 from visviva.errors import ConvergenceError, InvalidInput
-from visviva.particles import Particles
 from visviva.request import RunRequest
 from visviva.status import Status
 
@@ -35,12 +35,6 @@ __all__ = ["Megno"]
 #: Instants at which neighbors are looked at, and where among them each is: no motion keeps step with the golden mean.
 _INSTANTS = 2048
 _GOLDEN = 0.6180339887498949
-#: Instants by which the motion is measured.
-_LOOKS = 64
-#: Velocities that change by less than this part of themselves are those of a free body: it is measured by its start.
-_NO_CHANGE = 1e-12
-#: At so many of them accelerations are.
-_ACCELERATIONS = 8
 
 
 @known_keywords
@@ -126,8 +120,8 @@ def _megno(copies: EnsembleScene, request: MegnoRequest, run: Callable[..., Any]
 
     # Nobody goes anywhere from the start to the start, but what cannot be followed is refused.
     grown(np.array([begin]), np.ones((len(copies), 2)))
-    motion = run([begin, *instants[:: len(instants) // _LOOKS + 1], times[-1]], **how)
-    logarithm, status = grown(instants, _sizes(copies, motion))
+    motion = looked_at(run, begin, instants, **how)
+    logarithm, status = grown(instants, sizes_of_motions(copies, motion))
     if np.ndim(motion.status) == 0 and status[0] != Status.OK:
         last = float(np.append(begin, instants[np.isfinite(logarithm[0])])[-1])
         raise ConvergenceError("the step of a neighbor fell to zero, or it left the range of numbers", last)
@@ -141,36 +135,6 @@ def _megno(copies: EnsembleScene, request: MegnoRequest, run: Callable[..., Any]
         told, rows = float(times[-1]), rows[-1]
     ended = np.where(np.asarray(motion.status) == Status.OK, status, motion.status).astype(np.int8)
     return Megno(told, _averages(span, megno)[:, rows], megno[:, rows], exponents[:, rows], ended)
-
-
-def _sizes(copies: EnsembleScene, motion: Any) -> NDArray[np.float64]:
-    """Over which length a motion bends, and how fast it is, of each copy (B, 2); zeros where bodies act on each other.
-
-    Of what bends, v²/a, as the radius of a circle; of what does not, how far it goes about its middle.
-    """
-    found = np.zeros((len(copies), 2))
-    if any(_core.acts_between(force._to_core()) for force in copies.forces[0]):
-        return found
-    shape = (len(copies), len(motion.t), -1, 3)
-    position, velocity = motion.position.reshape(shape), motion.velocity.reshape(shape)
-    for copy, scene in enumerate(copies):
-        rows = np.flatnonzero(np.isfinite(position[copy]).all(axis=(1, 2)))
-        x, v, t = position[copy][rows], velocity[copy][rows], motion.t[rows]
-        extent, speed = (float(np.sqrt(np.square(each - each.mean(axis=(0, 1))).sum(axis=2).mean())) for each in (x, v))
-        if speed <= _NO_CHANGE * float(np.abs(v).max()):
-            continue
-        some = np.unique(np.linspace(0, len(rows) - 1, _ACCELERATIONS).astype(int))
-        bent = np.sqrt(np.mean([np.square(_acceleration(scene, x[k], v[k], t[k])).sum(axis=1).mean() for k in some]))
-        found[copy] = min(extent, speed * speed / bent if bent > 0.0 else np.inf), speed
-    return found
-
-
-def _acceleration(
-    scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64], t: np.float64
-) -> NDArray[np.float64]:
-    bodies = scene.particles
-    there = Particles(bodies.mass, position, velocity, bodies.names, bodies.radius)
-    return scene._like(there, scene.forces, float(t)).acceleration()
 
 
 def _instants(begin: float, asked: NDArray[np.float64], dt: float | None) -> NDArray[np.float64]:

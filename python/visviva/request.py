@@ -228,6 +228,29 @@ class StreamRequest(PlanRequest):
 
 
 @dataclass(frozen=True)
+class FlowRequest:
+    """What is asked of derivatives of a flow: the arguments of ``flow_jacobian``."""
+
+    t: ArrayLike
+    method: MethodName | Method = field(default="auto", kw_only=True)
+    dt: float | None = field(default=None, kw_only=True)
+    rtol: float | None = field(default=None, kw_only=True)
+    threads: int | None = field(default=None, kw_only=True)
+
+
+@dataclass(frozen=True)
+class BoundaryRequest:
+    """What is asked of motions through two places: the arguments of ``boundary_value``."""
+
+    t: float
+    position: ArrayLike
+    body: int | str | Sequence[int | str] | None = field(default=None, kw_only=True)
+    method: MethodName | Method = field(default="auto", kw_only=True)
+    rtol: float = field(default=1e-12, kw_only=True)
+    threads: int | None = field(default=None, kw_only=True)
+
+
+@dataclass(frozen=True)
 class MegnoRequest:
     """What is asked of neighboring motions: the arguments of ``megno``."""
 

@@ -12,9 +12,12 @@ from visviva import _core
 from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva.plan import Plan
-from visviva.request import MegnoRequest, PlanRequest, RunRequest, asked_by, execute
+from visviva.request import FlowRequest, MegnoRequest, PlanRequest, RunRequest, asked_by, execute
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from visviva.ensemble import EnsembleScene
     from visviva.megno import Megno
     from visviva.scene import Scene
@@ -276,6 +279,66 @@ class Runnable(Shown, ABC, Generic[_Result]):
         from visviva.megno import megno_of
 
         return megno_of(cast("Scene | EnsembleScene", self), request)
+
+    @asked_by(FlowRequest)
+    def flow_jacobian(self, request: FlowRequest) -> NDArray[np.float64]:
+        """Derivatives of the state at a time with respect to the state at the start: the state transition matrix.
+
+        A small difference of each number of the start goes by the linear equations of the motion beside it. All forces
+        do, and all methods but ``taylor`` and those of Boris. Derivatives of forces are right to 11 digits and more.
+
+        Units: those of the scene, a row those of a number of the state over those of each.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end, or output times in the order of the motion, forwards or backwards.
+        method, dt, rtol, threads : optional
+            As of `run`.
+
+        Returns
+        -------
+        ndarray, shape (6N, 6N), (T, 6N, 6N), (B, 6N, 6N) or (B, T, 6N, 6N)
+            Rows and columns are x, y, z of the first body, of the second and so on, then their velocities. Where
+            forces have an energy it is symplectic in places and momenta (Liouville: its determinant is 1). NaN after
+            the end of a copy that ended early, as its run tells.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `run`; rigid bodies; bodies that have merged; a motion so far from the origin that rounding hides
+            neighbors.
+        visviva.ConvergenceError
+            Of a scene: the motion, or its neighbor, ended early.
+        visviva.Interrupted
+            Ctrl-C.
+
+        Warns
+        -----
+        visviva.AccuracyWarning
+            As `run`.
+
+        References
+        ----------
+        E. Hairer, S. P. Nørsett & G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.14; O.
+        Montenbruck & E. Gill, *Satellite Orbits* (2000), chapter 7.
+
+        Examples
+        --------
+        Where a satellite is after a quarter of an hour for a small difference of its speed:
+
+        >>> import numpy as np, visviva as vv
+        >>> earth = vv.CentralField(vv.potentials.PowerLaw(k=-3.986004418e14, n=1.0))
+        >>> satellite = vv.Particles([1.0], [[7.0e6, 0.0, 0.0]], [[0.0, 7546.05, 0.0]])
+        >>> flow = vv.Scene(satellite, earth).flow_jacobian(900.0)
+        >>> flow.shape
+        (6, 6)
+        >>> bool(abs(np.linalg.det(flow) - 1.0) < 1e-9)
+        True
+        """
+        from visviva._flow_jacobian import flow_jacobian_of
+
+        return flow_jacobian_of(cast("Scene | EnsembleScene", self), request)
 
 
 def __dir__() -> list[str]:

@@ -18,6 +18,7 @@ from visviva._continuation import with_continuation
 from visviva._frames import Framed
 from visviva._html import Sheet
 from visviva._keywords import known_keywords
+from visviva._scene_boundary import BetweenPlaces
 from visviva._scene_parts import bodies_and_particles, sorted_parts
 from visviva._scene_state import AtPresent
 from visviva._turning import described, joined_bodies, with_centers
@@ -43,7 +44,7 @@ __all__ = ["Scene"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class Scene(Runnable[Trajectory], Framed, AtPresent):
+class Scene(Runnable[Trajectory], Framed, AtPresent, BetweenPlaces):
     """Particles and the forces on them, at a time.
 
     Units: those of the caller, one consistent system; angles in radians.

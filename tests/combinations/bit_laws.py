@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from law_book import law
 from recipe import Case, Recipe, Refused
-from running import TIERS, Bits, collisions, differences, events, execute, outcome, worker
+from running import TIERS, Bits, collisions, differences, ends_in_a_closed_form, events, execute, outcome, worker
 
 import visviva as vv
 
@@ -344,7 +344,7 @@ def no_step_is_longer_than_max_step(recipe: Recipe) -> None:
     result, ended = execute(case.start, case.t, {**case.how, "max_step": longest})
     if result is None:
         raise Refused(ended)
-    if ended or result.plan.closed_form or np.any(result.status):
+    if ended or result.plan.closed_form or np.any(result.status) or ends_in_a_closed_form(result, case.how):
         return
     if case.alone:
         steps = np.array([result.stats.steps])

@@ -12,7 +12,7 @@ import numpy as np
 from drawing import FIRST_EVENTS
 from law_book import EPSILON, law
 from recipe import COLUMNS, Case, Recipe, Refused
-from running import differences, events, execute, outcome
+from running import differences, ends_in_a_closed_form, events, execute, outcome
 from solutions import loses_energy
 
 import visviva as vv
@@ -48,6 +48,8 @@ def events_change_no_bit_of_the_run(recipe: Recipe) -> None:
     without = _ran(case, plain)
     if (np.atleast_1d(without.stats.evaluations if case.alone else without.per_trajectory["evaluations"]) == 0).any():
         raise Refused("closed forms, which are not used to look for events")
+    if ends_in_a_closed_form(without, case.how):
+        raise Refused("a closed form after a merger, which is not used to look for events")
     watched = _ran(case, _with(case, terminal=0))
     together = "also integrated together" in str(watched.plan)
     too_many = np.atleast_1d(watched.status) == vv.Status.TOO_MANY_STEPS

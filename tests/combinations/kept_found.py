@@ -370,4 +370,44 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             drifting=True,
         ),
     ),
+    # Two that a spring holds merge, and the others, on which nothing acts any more, go on in a closed form.
+    *(
+        (
+            law,
+            Recipe(
+                method="auto",
+                bodies=9,
+                forces=(("Spring", 67),),
+                seed=916,
+                tame=False,
+                planar=True,
+                at_origin=True,
+                members=9,
+                own=("parameters",),
+                steps=2,
+                outputs=5,
+                columns=("position",),
+                collisions="merge",
+            ),
+        )
+        for law in ("events_change_no_bit_of_the_run", "no_step_is_longer_than_max_step")
+    ),
+    # Two fall into each other by a potential that is attractive beneath, at speeds beyond the table of a drag.
+    (
+        "declared_invariants_hold",
+        Recipe(
+            method="tsitouras54",
+            bodies=12,
+            forces=(("PairPotential", 24), ("Damper", 69), ("SampledDrag", 63)),
+            seed=1614,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            own=("numbers", "mass"),
+            own_massless=True,
+            steps=18,
+            decades=9,
+            outputs=3,
+        ),
+    ),
 ]

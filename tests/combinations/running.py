@@ -15,6 +15,7 @@ import numpy as np
 
 import visviva as vv
 from visviva import _core
+from visviva._mergers import hosts, remaining
 
 TIERS: list[str] = [tier for tier in _core.info()["simd_available"] if tier != _core.info()["simd"]]
 Bits = dict[str, bytes | str]
@@ -158,3 +159,18 @@ def _serve() -> None:
 
 if __name__ == "__main__":
     _serve()
+
+
+def ends_in_a_closed_form(result: Any, how: dict[str, Any]) -> bool:
+    """Whether what mergers have left goes on in a closed form, which takes no steps and looks for no events."""
+    if how.get("collisions") != "merge":
+        return False
+    runs = (
+        [result] if np.ndim(result.status) == 0 else [result[int(copy)] for copy in np.flatnonzero(result.status == 0)]
+    )
+    for scene in (run.final for run in runs if run.status == 0):
+        parts = hosts(scene.particles)
+        rest = None if parts is None else remaining(scene, parts)
+        if rest is not None and rest.plan(rest.t0 + 1.0).closed_form:
+            return True
+    return False

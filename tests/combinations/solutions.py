@@ -28,9 +28,11 @@ def states(case: Case, **how: object) -> tuple[NDArray[np.float64], NDArray[np.f
         if ended.startswith("refused"):
             raise Refused(ended)
         _check_series(case)
+        _check_tables(case, arguments)
         raise AssertionError(f"a tame scene ended with {ended} ({arguments})")
     if not case.alone and result.status.any():
         _check_series(case)
+        _check_tables(case, arguments)
         raise AssertionError(f"a tame scene ended with status {result.status} ({arguments})")
     position, velocity = result.position, result.velocity
     return (position[-1], velocity[-1]) if case.alone else (position[:, -1], velocity[:, -1])
@@ -50,6 +52,16 @@ def _check_series(case: Case) -> None:
                 others = np.delete(places, source, axis=0)
                 if (np.linalg.norm(others - places[source], axis=1) < radius).any():
                     raise Refused("a series in R/r that does not converge")
+
+
+def _check_tables(case: Case, arguments: dict[str, Any]) -> None:
+    """Refuse motions that leave a table of a force, as of a drag of bodies that fall into each other."""
+    for scene in case.members():
+        try:
+            scene.run(list(case.t[-1:]), **arguments)
+        except vv.ConvergenceError as error:
+            if "a force of the scene is not known" in str(error):
+                raise Refused("a force beyond the end of its table") from error
 
 
 def _pull(scene: vv.Scene, end: float) -> float:

@@ -13,7 +13,7 @@ ACROSS = (1e-1, 1e-2, 1e-3, 1e-4)
 
 
 def dragged(across: float, coefficient: float) -> vv.Lagrangian:
-    """A body that turns in x while its small velocity in y passes: drag by the square of the speed turns sharply there."""
+    """Give a body that turns in x while it passes slowly in y: drag by the square of its speed turns sharply there."""
     return vv.Lagrangian(
         (vx**2 + vy**2) / 2 - (x**2 + 2 * y**2) / 2 - sp.sin(x) / 3,
         [x, y],

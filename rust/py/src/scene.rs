@@ -26,7 +26,7 @@ use visviva_core::parallel::thread_count;
 use visviva_core::scene::Scene;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::refuse_frames;
-use visviva_core::scene::run::neighbors::{Toward, follow};
+use visviva_core::scene::run::neighbors::{Directions, Toward, follow};
 use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
 /// Plans a run without running it.
@@ -79,13 +79,38 @@ pub(crate) fn neighbors<'py>(
     let (scene, request, _) = asked.prepared(threads)?;
     let (toward, _) = copied("toward", &toward, [Some(scene.particles), Some(2), Some(3)])?;
     let (sizes, _) = copied("sizes", &sizes, [Some(scene.copies), Some(2)])?;
-    let (directions, sizes) = (points(&toward), sizes.as_chunks::<2>().0);
-    let toward = Toward { directions: directions.as_chunks::<2>().0, sizes };
+    let directions = points(&toward);
+    let directions = Directions::OfAll(directions.as_chunks::<2>().0);
+    let toward = Toward { directions, sizes: sizes.as_chunks::<2>().0 };
     let grown = compute(py, 0, None, |ticker| follow(&scene, &request, &toward, ticker))?.whole(py)?;
     let status = grown.iter().map(|copy| status(&copy.ending)).collect();
     let shape = [grown.len(), request.times.len()];
     let growth = grown.into_iter().flat_map(|copy| copy.growth).collect();
     (moved(py, growth, &shape)?, moved(py, status, &shape[..1])?).into_pyobject(py)
+}
+
+/// What small differences of the copies of a scene become by their linear equations, and how each copy ended.
+#[pyfunction]
+#[pyo3(signature = (asked, toward, sizes, *, threads))]
+pub(crate) fn differences<'py>(
+    py: Python<'py>,
+    asked: Asked<'py>,
+    toward: Array<'py>,
+    sizes: Array<'py>,
+    threads: Option<i64>,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let (scene, request, _) = asked.prepared(threads)?;
+    let (copies, particles) = (scene.copies, scene.particles);
+    let (toward, _) = copied("toward", &toward, [Some(copies), Some(particles), Some(2), Some(3)])?;
+    let (sizes, _) = copied("sizes", &sizes, [Some(copies), Some(2)])?;
+    let directions = points(&toward);
+    let directions = Directions::OfEach(directions.as_chunks::<2>().0);
+    let toward = Toward { directions, sizes: sizes.as_chunks::<2>().0 };
+    let grown = compute(py, 0, None, |ticker| follow(&scene, &request, &toward, ticker))?.whole(py)?;
+    let status = grown.iter().map(|copy| status(&copy.ending)).collect();
+    let numbers = grown.into_iter().flat_map(|copy| copy.differences.into_flattened().into_flattened());
+    let shape = [copies, request.times.len(), particles, 2, 3];
+    (moved(py, numbers.collect(), &shape)?, moved(py, status, &shape[..1])?).into_pyobject(py)
 }
 
 /// Conserved quantities of recorded states.

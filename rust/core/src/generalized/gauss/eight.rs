@@ -257,10 +257,9 @@ impl Trial<Lanes> for GaussEight {
         for (pace, missed) in self.paces.iter_mut().zip(missed.0) {
             pace.missed = missed;
         }
-        let unfallen = self.unfallen(h, running);
+        self.ask_for_errors((t, h), state, (running, is_known));
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let pace = &mut self.paces[lane];
-            pace.unfallen = unfallen[lane];
             if pace.refuses(self.steps, &self.beyond.ending) {
                 errors.0[lane] = 4.0;
                 if matches!(self.steps, Steps::Equal(_)) {

@@ -48,13 +48,10 @@ impl Ending {
 
     /// Whether rates that miss by so much, as a part of a size, have met something new, where steps are led astray by `delta`.
     pub(super) fn met(&self, missed: f64, delta: f64, tolerance: f64) -> bool {
+        let smooth = self.share * delta;
+        let least = TOLERANCES * tolerance;
+        let least = if least < LOST_DIGITS { LOST_DIGITS } else { least };
         // Of what is no number as well.
-        !(missed <= self.share * delta || is_little(missed, tolerance))
+        !(missed <= smooth || missed <= least)
     }
-}
-
-/// Whether rates may err by so much, as a part of a size.
-pub(super) fn is_little(error: f64, tolerance: f64) -> bool {
-    let least = TOLERANCES * tolerance;
-    error <= if least < LOST_DIGITS { LOST_DIGITS } else { least }
 }

@@ -2,7 +2,7 @@
 //!
 //! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
 //! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
-//! in the next one and by whether its terms fall ([`decay`]); where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
+//! in the next one, and by how its terms fall ([`decay`]); where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
 //! by what will push it ([`rest`]), and rounding by nothing
 //! ([`rounding`], [`noise`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
 //! alone.

@@ -7,7 +7,7 @@
 
 use super::super::ahead_of_forces::{FREE, LONGEST_FREE};
 use super::Table;
-use super::ending::{Ending, is_little};
+use super::ending::Ending;
 use crate::numerics::elementary::{self, Exponential};
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::real::Real;
@@ -27,6 +27,8 @@ const LATELY: f64 = 0.8;
 const HARDLY_RESOLVING: f64 = 0.9;
 /// Steps get much shorter by a δ so many times as large as it should be.
 const MUCH_SHORTER: f64 = 4.0;
+/// A step may err by so many tolerances, as its polynomial tells, which is far more than it does where motions are smooth.
+const ERRING: f64 = 10.0;
 /// Steps change where they would change by more than from here …
 const SHORTER: f64 = 0.85;
 /// … to here.
@@ -70,8 +72,8 @@ pub(super) struct Pace {
     pub(super) converged: bool,
     /// By how much the rates at its end are not what the stages lead to.
     pub(super) missed: f64,
-    /// How large the last terms of its polynomial are, where they do not fall as those of smooth motions.
-    pub(super) unfallen: f64,
+    /// By how much it errs, as its polynomial tells.
+    pub(super) error: f64,
     /// By how much it changed velocities, as a part of them.
     pub(super) felt: f64,
     /// The longest step that feels nothing.
@@ -116,8 +118,8 @@ impl Pace {
                 // It passes through zero at times.
                 let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
                 let strays = self.unresolved().is_some() || self.strays(delta, band);
-                let rough = !is_little(self.unfallen, tolerance);
-                !self.converged || strays || rough || ending.met(self.missed, astray, tolerance)
+                let errs = self.errs(steps);
+                !self.converged || strays || errs || ending.met(self.missed, astray, tolerance)
             }
         }
     }
@@ -132,9 +134,14 @@ impl Pace {
         matches!(steps, Steps::Chosen { delta, band, .. } if self.converged && !self.strays(delta, band))
     }
 
-    /// Whether it is to be asked whether the terms of a step's polynomial fall.
-    pub(super) fn may_be_rough(&self, steps: Steps) -> bool {
-        matches!(steps, Steps::Chosen { tolerance, .. } if !is_little(self.missed, tolerance))
+    /// Whether it is to be asked what the polynomial of a step tells: if it leads to other rates at the end.
+    pub(super) fn may_err(&self, steps: Steps) -> bool {
+        matches!(steps, Steps::Chosen { tolerance, .. } if self.missed > ERRING * tolerance)
+    }
+
+    /// Whether the step errs by what is not allowed.
+    pub(super) fn errs(&self, steps: Steps) -> bool {
+        matches!(steps, Steps::Chosen { tolerance, .. } if self.error > ERRING * tolerance)
     }
 
     /// Whether δ is out of the band.

@@ -222,7 +222,11 @@ impl Trial<f64> for GaussStep {
         });
         self.pace.felt = if iterated.converged { self.felt(h) } else { f64::INFINITY };
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
-        self.pace.unfallen = if self.pace.may_be_rough(self.steps) { self.unfallen(h) } else { 0.0 };
+        self.pace.error = if self.pace.may_err(self.steps) { self.error(h) } else { 0.0 };
+        if !is_known && self.pace.errs(self.steps) {
+            self.look_for_noise(t, state);
+            self.pace.error = self.error(h);
+        }
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }

@@ -1,4 +1,4 @@
-//! How far neighbors of motions get: beside each unit runs a small difference of it ([`variation`]).
+//! What becomes of neighbors of motions, and how far they get: beside each unit runs a small difference of it ([`variation`]).
 //!
 //! The one idea: the motion and the difference are one state, so that both take the same steps. Before the difference leaves the range of numbers it is set back to a length of about 1, and the logarithm of what
 //! it has grown is kept.
@@ -7,6 +7,7 @@ mod choosing;
 mod equal;
 mod variation;
 
+use super::super::frame::Units;
 use super::super::layout::Layout;
 use super::super::unit::{Prepared, Unit};
 use super::fixed::lay;
@@ -23,22 +24,59 @@ use variation::{Size, Variation};
 
 /// Between which powers of two the length of a difference may be.
 const WIDEST: i32 = 128;
+/// What a step may be off in a difference, as a part of it: more than rounding of a derivative in a deep encounter, …
+const OF_DIFFERENCES: f64 = 1e-5;
+/// … and no less than this, which is rounding elsewhere, where it is asked what becomes of it.
+const ROUNDED: f64 = 1e-9;
+
 /// What became of a unit and its neighbor.
 pub struct Followed {
     /// Which copy it is.
     pub copy: usize,
     /// The logarithm of what the difference has grown, at each output time; NaN after an end.
     pub growth: Vec<f64>,
+    /// What has become of it, of the place and the velocity of each body at each output time; nothing where that is not asked.
+    pub differences: Vec<[[f64; 3]; 2]>,
     /// How it ended.
     pub ending: Ending,
 }
 
 /// From where neighbors begin, and how far they may be.
 pub struct Toward<'a> {
-    /// Differences of the place and the velocity of each body, in sizes of the motion.
-    pub directions: &'a [[[f64; 3]; 2]],
+    /// Differences of the place and the velocity of each body.
+    pub directions: Directions<'a>,
     /// How far each copy goes about its middle, and how fast. Bodies on which nothing but fields act have no other size.
     pub sizes: &'a [[f64; 2]],
+}
+
+/// Which differences neighbors begin with.
+#[derive(Clone, Copy)]
+pub enum Directions<'a> {
+    /// Those of all copies, in sizes of the motion, of which is asked how far they get.
+    OfAll(&'a [[[f64; 3]; 2]]),
+    /// Those of each copy, one after another, in the units of the scene, of which is asked what becomes of them.
+    OfEach(&'a [[[f64; 3]; 2]]),
+}
+
+impl Directions<'_> {
+    /// Whether it is asked what becomes of them.
+    fn are_followed(&self) -> bool {
+        matches!(self, Self::OfEach(_))
+    }
+
+    /// That of a body of a copy, in the units of a plan, in which the motion has a size.
+    fn of(&self, (copy, body): (usize, usize), bodies: usize, size: &Size, units: Units) -> [[f64; 3]; 2] {
+        match self {
+            Self::OfAll(directions) => {
+                let [place, velocity] = directions[body];
+                [place.map(|x| x * size.place), velocity.map(|v| v * size.velocity)]
+            }
+            Self::OfEach(directions) => {
+                let [place, velocity] = directions[copy * bodies + body];
+                [place.map(|x| scale(x, -units.length)), velocity.map(|v| scale(v, units.velocity()))]
+            }
+        }
+    }
 }
 
 /// Follows all units of a plan.
@@ -64,6 +102,10 @@ struct Group<'a> {
     state: State<Lanes>,
     /// What is to be added to the logarithm of a length.
     gained: [f64; WIDTH],
+    /// The powers of two that differences are to be multiplied with.
+    raised: [i32; WIDTH],
+    /// What a step may be off in a difference, as a part of it.
+    accuracy: f64,
     followed: Vec<Followed>,
     /// The lanes whose units go on.
     running: Bits,
@@ -97,13 +139,16 @@ impl<'a> Group<'a> {
         let mut motion = units[0].blank_state(1);
         lay(job.plan, &units, &mut motion);
         let mut apart = [motion.q().to_vec(), motion.v().to_vec()];
-        for (apart, kind) in apart.iter_mut().zip([0, 1]) {
-            apart.fill(Lanes::zero());
-            for lane in 0..layout.units() {
-                let at = lane.min(units.len() - 1);
-                let (unit, size) = (&units[at], [sizes[at].place, sizes[at].velocity][kind]);
-                for (slot, &body) in unit.unit.bodies.iter().enumerate() {
-                    unit.lay(slot, apart, lane, toward.directions[body][kind].map(|x| x * size));
+        apart.iter_mut().for_each(|apart| apart.fill(Lanes::zero()));
+        let bodies = job.scene.particles;
+        for lane in 0..layout.units() {
+            let at = lane.min(units.len() - 1);
+            let unit = &units[at];
+            for (slot, &body) in unit.unit.bodies.iter().enumerate() {
+                let of = (unit.unit.copy, body);
+                let begin = toward.directions.of(of, bodies, &sizes[at], job.plan.units);
+                for (apart, begin) in apart.iter_mut().zip(begin) {
+                    unit.lay(slot, apart, lane, begin);
                 }
             }
         }
@@ -116,16 +161,19 @@ impl<'a> Group<'a> {
         let ((_, q_rest), (_, v_rest)) = state.halves_mut();
         q_rest.copy_from_slice(&rests[0]);
         v_rest.copy_from_slice(&rests[1]);
-        let times = job.times.len();
+        let (times, is_followed) = (job.times.len(), toward.directions.are_followed());
         let followed = units.iter().map(|unit| Followed {
             copy: unit.unit.copy,
             growth: vec![f64::NAN; times],
+            differences: if is_followed { vec![[[f64::NAN; 3]; 2]; times * bodies] } else { Vec::new() },
             ending: Ending::Finished,
         });
         let running = (0..units.len()).fold(Bits(0), |lanes, lane| lanes.or(layout.mask(lane)));
         let followed = followed.collect();
+        let accuracy = if is_followed { Real::max(job.rtol, ROUNDED) } else { OF_DIFFERENCES };
+        let (gained, raised) = ([0.0; WIDTH], [0; WIDTH]);
         let mut group =
-            Self { job, units, layout, variation, state, gained: [0.0; WIDTH], followed, running };
+            Self { job, units, layout, variation, state, gained, raised, accuracy, followed, running };
         group.gained = group.length(&group.state).0.map(|length| -length.ln());
         Ok(group)
     }
@@ -145,11 +193,23 @@ impl<'a> Group<'a> {
         self.variation.length(&state.q()[half..], &state.v()[half..])
     }
 
-    /// Takes down what differences have grown to at an output time, in some lanes.
-    fn record(&mut self, output: usize, length: &Lanes, lanes: Bits) {
-        for (lane, followed) in self.followed.iter_mut().enumerate() {
-            if lanes.lane(lane) {
-                followed.growth[output] = length.0[lane].ln() + self.gained[lane];
+    /// Takes down what differences have become at an output time, in some lanes: in the present state, or in another one.
+    fn record(&mut self, output: usize, other: Option<&State<Lanes>>, length: &Lanes, lanes: Bits) {
+        let (half, state) = (self.variation.half(), other.unwrap_or(&self.state));
+        let (places, velocities) = (&state.q()[half..], &state.v()[half..]);
+        let (bodies, of) = (self.job.scene.particles, self.job.plan.units);
+        for (lane, followed) in self.followed.iter_mut().enumerate().filter(|(lane, _)| lanes.lane(*lane)) {
+            followed.growth[output] = length.0[lane].ln() + self.gained[lane];
+            if followed.differences.is_empty() {
+                continue;
+            }
+            let (unit, raised) = (&self.units[lane], self.raised[lane]);
+            for (slot, &body) in unit.unit.bodies.iter().enumerate() {
+                let picked = |block: &[Lanes], exponent: i32| {
+                    unit.pick(slot, block, lane).map(|number| scale(number, exponent + raised))
+                };
+                followed.differences[output * bodies + body] =
+                    [picked(places, of.length), picked(velocities, -of.velocity())];
             }
         }
     }
@@ -164,6 +224,7 @@ impl<'a> Group<'a> {
             if power.abs() > WIDEST {
                 factors.0[lane] = power_of_two(-power);
                 self.gained[lane] += f64::from(power) * LN_2;
+                self.raised[lane] += power;
                 changed = changed.or(Bits(1 << lane));
             }
         }

@@ -1,7 +1,7 @@
 //! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
 //! stages, and what lies between these unseen.
 
-use super::super::decay::unfallen;
+use super::super::decay::error_of_mean;
 use super::super::told::{led, missed, smoothness};
 use super::GaussEight;
 use crate::error::Result;
@@ -54,23 +54,35 @@ impl GaussEight {
         most
     }
 
-    /// How large the last terms of the polynomials of steps are, as parts of sizes, where they do not fall.
-    pub(super) fn unfallen(&mut self, h: Lanes, running: Bits) -> [f64; WIDTH] {
-        let mut most = [0.0; WIDTH];
-        let asked = self.lanes(|_, pace| pace.may_be_rough(self.steps)).and(running);
-        let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return most };
+    /// Tells the paces by how much steps err, as their polynomials tell, as parts of sizes.
+    pub(super) fn ask_for_errors(
+        &mut self,
+        (t, h): (Lanes, Lanes),
+        state: &State<Lanes>,
+        (running, known): (Bits, Bits),
+    ) {
+        self.paces.iter_mut().for_each(|pace| pace.error = 0.0);
+        let asked = self.lanes(|_, pace| pace.may_err(self.steps)).and(running);
+        self.take_errors(h, asked);
+        let again = self.lanes(|_, pace| pace.errs(self.steps)).and(known.not());
+        self.look_for_noise(t, state, again);
+        self.take_errors(h, again);
+    }
+
+    fn take_errors(&mut self, h: Lanes, asked: Bits) {
+        let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return };
         // What a shadow step would begin with is of nobody before there is one.
-        let (columns, coefficients) = (&self.columns, &mut self.shadow.guess);
-        led(rows, self.table.stages, &columns.rates, coefficients);
-        for (lane, most) in most.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
+        let Self { table, columns, shadow, paces, .. } = self;
+        led(rows, table.stages, &columns.rates, &mut shadow.guess);
+        for (lane, pace) in paces.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
             let limit = columns.limit(lane);
-            for (i, row) in coefficients.iter().enumerate() {
-                let last = unfallen(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
-                let part = last * h.0[lane].abs() * Real::min(columns.scales[i].0[lane], limit);
-                *most = if part > *most { part } else { *most };
+            pace.error = 0.0;
+            for (i, row) in shadow.guess.iter().enumerate() {
+                let error = error_of_mean(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
+                let part = error * h.0[lane].abs() * Real::min(columns.scales[i].0[lane], limit);
+                pace.error = if part > pace.error { part } else { pace.error };
             }
         }
-        most
     }
 
     /// The parts of steps between whose stages nothing lies that none of them feels, in the lanes of the mask.

@@ -1,7 +1,7 @@
 //! By what a tried step of one trajectory is judged before it is taken: how smooth the motion is, whether the ends are those of
 //! the stages, and what lies between these unseen.
 
-use super::super::decay::unfallen;
+use super::super::decay::error_of_mean;
 use super::super::noise;
 use super::super::rounding::{HARDLY, ROUNDING};
 use super::super::step::{Stages, largest, led};
@@ -114,8 +114,8 @@ impl GaussStep {
         most
     }
 
-    /// How large the last terms of the step's polynomial are, as parts of sizes, where they do not fall.
-    pub(super) fn unfallen(&mut self, h: f64) -> f64 {
+    /// By how much the step errs, as its polynomial tells, as a part of a size.
+    pub(super) fn error(&mut self, h: f64) -> f64 {
         let Self { beyond, stages, led: coefficients, .. } = self;
         let Some(rows) = &beyond.coefficients else { return 0.0 };
         led(rows, &stages.rates, coefficients);
@@ -123,7 +123,7 @@ impl GaussStep {
         let mut most = 0.0;
         for (i, coefficients) in coefficients.iter().enumerate() {
             let part =
-                unfallen(coefficients.0, stages.noise[i]) * h.abs() * Real::min(stages.scales[i], limit);
+                error_of_mean(coefficients.0, stages.noise[i]) * h.abs() * Real::min(stages.scales[i], limit);
             most = if part > most { part } else { most };
         }
         most

@@ -14,9 +14,6 @@ use crate::scene::integrate::adaptive::measure;
 use crate::scene::integrate::report::Ending;
 use crate::scene::layout::Layout;
 
-/// What a step may be off in a difference, as a part of it: more than rounding of a derivative in a deep encounter.
-const OF_DIFFERENCES: f64 = 1e-5;
-
 /// Where the output times of the lanes stand.
 struct Outputs {
     times: Vec<f64>,
@@ -93,7 +90,7 @@ impl Group<'_> {
 
     /// Allows differences a part of what they are now.
     fn allow(&self, norm: &mut Norm<Lanes>) {
-        let allowed = Lanes::splat(OF_DIFFERENCES) * self.length(&self.state);
+        let allowed = Lanes::splat(self.accuracy) * self.length(&self.state);
         for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
             block.atol[0] = allowed * size;
         }
@@ -104,7 +101,7 @@ impl Group<'_> {
         let length = self.length(&self.state);
         for lane in 0..self.units.len() {
             while outputs.times.get(outputs.next[lane]) == Some(&0.0) {
-                self.record(outputs.next[lane], &length, Bits(1 << lane));
+                self.record(outputs.next[lane], None, &length, Bits(1 << lane));
                 outputs.next[lane] += 1;
             }
         }
@@ -140,7 +137,7 @@ impl Group<'_> {
             trial.at(outcome, &mut self.variation, &self.state, theta, between, ticker)?;
             let length = self.length(between);
             for lane in (0..self.units.len()).filter(|&lane| due.lane(lane)) {
-                self.record(outputs.next[lane], &length, Bits(1 << lane));
+                self.record(outputs.next[lane], Some(between), &length, Bits(1 << lane));
                 outputs.next[lane] += 1;
             }
         }

@@ -38,21 +38,21 @@ impl Group<'_> {
                 }
             }
             stepper.settle(&mut self.state);
-            let length = match place.past {
-                None => self.length(&self.state),
-                Some(past) => {
-                    between.copy_from(&self.state);
-                    let past = scale(past, -plan.units.time);
-                    stepper.between(node - first, past, &mut between, &mut self.variation, ticker)?;
-                    self.length(&between)
-                }
+            let other = if let Some(past) = place.past {
+                between.copy_from(&self.state);
+                let past = scale(past, -plan.units.time);
+                stepper.between(node - first, past, &mut between, &mut self.variation, ticker)?;
+                Some(&between)
+            } else {
+                None
             };
+            let length = self.length(other.unwrap_or(&self.state));
             for lane in 0..self.units.len() {
                 if self.running.lane(lane) && !length.0[lane].is_finite() {
                     self.end(lane, Ending::NotFinite);
                 }
             }
-            self.record(output, &length, self.running);
+            self.record(output, other, &length, self.running);
             if !self.running.any() {
                 break;
             }

@@ -1,8 +1,8 @@
 //! A motion and a small difference of it as one system: `q'' = a(q, v)`, `δ'' = (∂a/∂q) δ + (∂a/∂v) δ'`.
 //!
 //! The one idea: the derivative of all forces in one direction is a difference of evaluations next to each other, four of
-//! them, so that neither rounding nor the higher derivatives are felt. So every force has it, and the equations of the
-//! difference are linear: its length matters to nobody.
+//! them, so that neither rounding nor the higher derivatives are felt; that two of them tell the same as the other two shows
+//! it. So every force has it, and the equations of the difference are linear: its length matters to nobody.
 
 use crate::error::Result;
 use crate::forces::{Dynamics, ForceTerm};
@@ -19,8 +19,12 @@ use std::sync::Arc;
 /// How far apart the states are at which forces are compared, in lengths over which forces change, 2⁻¹²: of forces that fall as
 /// 1/r² the fifth derivatives then leave 1e-13 of a derivative, and rounding leaves 1e-12.
 const APART: f64 = 1.0 / 4096.0;
-/// The weights of the difference over one such length, and over two.
-const WEIGHTS: [(f64, f64); 2] = [(1.0, 8.0 / 12.0), (2.0, -1.0 / 12.0)];
+/// Slopes over one such length and over two differ by its square; where that is more than this part of them, forces change over
+/// shorter ones, and so often at most it is made as much shorter …
+const DIFFERENT: f64 = 1e-5;
+const SHORTER: u32 = 3;
+/// … that they differ by this part, of which the square is left.
+const ALIKE: f64 = 1e-6;
 /// That length is the size of a unit, shorter where accelerations are larger than is usual for it, as those of a body that falls,
 /// but not by more, and longer where they are smaller if nothing acts but what falls as 1/r².
 const LEAST: f64 = 1e-4;
@@ -58,6 +62,8 @@ pub(super) struct Variation {
     places: Vec<Lanes>,
     velocities: Vec<Lanes>,
     accelerations: Vec<Lanes>,
+    /// The slope over two lengths.
+    farther: Vec<Lanes>,
 }
 
 impl Variation {
@@ -97,7 +103,8 @@ impl Variation {
             begun: 0.0,
             places: room.clone(),
             velocities: room.clone(),
-            accelerations: room,
+            accelerations: room.clone(),
+            farther: room,
         }
     }
 
@@ -136,6 +143,31 @@ impl Variation {
         let reach = (usual / large).sqrt().max(Lanes::splat(LEAST)).min(Lanes::splat(self.slowest));
         let known = Lanes::zero().less(usual).and(Lanes::zero().less(large));
         Lanes::select(known, reach, Lanes::one())
+    }
+
+    /// The slope of accelerations along a difference, over so many steps to both sides.
+    fn slope(
+        &mut self,
+        (t, steps): (&Lanes, f64),
+        (q, apart): (&[Lanes], &[Lanes]),
+        (v, parting): (&[Lanes], &[Lanes]),
+        step: Lanes,
+        slope: &mut [Lanes],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        slope.fill(Lanes::zero());
+        for sign in [1.0, -1.0] {
+            let along = step * Lanes::splat(sign * steps);
+            let velocities = &mut self.velocities[..v.len()];
+            self.places.copy_from_slice(q);
+            velocities.copy_from_slice(v);
+            Lanes::pass(Accumulate { values: apart, weight: &along, to: &mut self.places });
+            Lanes::pass(Accumulate { values: parting, weight: &along, to: velocities });
+            self.dynamics.acceleration(t, &self.places, velocities, &mut self.accelerations, ticker)?;
+            let weight = Lanes::splat(sign / (2.0 * steps)) / step;
+            Lanes::pass(Accumulate { values: &self.accelerations, weight: &weight, to: slope });
+        }
+        Ok(())
     }
 }
 
@@ -176,20 +208,24 @@ impl System<Lanes> for Variation {
             *place = x * there;
         }
         let far = Lanes::splat(OF_STATE) * self.length(&self.places, v);
-        let step = (Lanes::splat(APART) * self.reach(a)).max(far) / self.length(apart, parting);
-        change.fill(Lanes::zero());
-        for (steps, weight) in WEIGHTS {
-            for sign in [1.0, -1.0] {
-                let along = step * Lanes::splat(sign * steps);
-                let velocities = &mut self.velocities[..v.len()];
-                self.places.copy_from_slice(q);
-                velocities.copy_from_slice(v);
-                Lanes::pass(Accumulate { values: apart, weight: &along, to: &mut self.places });
-                Lanes::pass(Accumulate { values: parting, weight: &along, to: velocities });
-                self.dynamics.acceleration(&t, &self.places, velocities, &mut self.accelerations, ticker)?;
-                let weight = Lanes::splat(sign * weight) / step;
-                Lanes::pass(Accumulate { values: &self.accelerations, weight: &weight, to: change });
+        let length = self.length(apart, parting);
+        let (mut step, least) = ((Lanes::splat(APART) * self.reach(a)).max(far) / length, far / length);
+        // A slope of forces that change over the size of a unit.
+        let usual = self.root(Lanes::pass(Square { of: a, measure: &Lanes::one() })) * length;
+        for shorter in 0..=SHORTER {
+            self.slope((&t, 1.0), (q, apart), (v, parting), step, change, ticker)?;
+            let mut farther = core::mem::take(&mut self.farther);
+            self.slope((&t, 2.0), (q, apart), (v, parting), step, &mut farther, ticker)?;
+            let [of_slopes, of_differences] = Lanes::pass(Extrapolated { slopes: change, farther: &farther });
+            self.farther = farther;
+            let beside = self.root(of_slopes).max(usual);
+            let part = self.root(of_differences) / beside;
+            let different = Lanes::splat(DIFFERENT).less(part).and(least.less(step));
+            if shorter == SHORTER || !different.any() {
+                break;
             }
+            let shortened = (step * (Lanes::splat(ALIKE) / part).sqrt()).max(least);
+            step = Lanes::select(different, shortened, step);
         }
         Ok(())
     }
@@ -217,6 +253,30 @@ impl<S: Element> Pass<S> for Square<'_, S> {
             sum = number.multiply_add(number, sum);
         }
         sum.store()
+    }
+}
+
+/// Takes out of slopes what they differ by from those over twice the length; the sums of squares of both.
+struct Extrapolated<'a, S> {
+    slopes: &'a mut [S],
+    farther: &'a [S],
+}
+
+impl<S: Element> Pass<S> for Extrapolated<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> [S; 2] {
+        let third = V::splat(1.0 / 3.0);
+        let slopes = V::view_mut(self.slopes);
+        let farther = &V::view(self.farther)[..slopes.len()];
+        let (mut of_slopes, mut of_differences) = (V::zero(), V::zero());
+        for i in 0..slopes.len() {
+            let (slope, difference) = (slopes[i], slopes[i] - farther[i]);
+            slopes[i] = difference.multiply_add(third, slope);
+            of_slopes = slope.multiply_add(slope, of_slopes);
+            of_differences = difference.multiply_add(difference, of_differences);
+        }
+        [of_slopes.store(), of_differences.store()]
     }
 }
 
