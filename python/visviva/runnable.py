@@ -58,9 +58,10 @@ class Runnable(Shown, ABC, Generic[_Result]):
             One of `visviva.methods`, or its name. ``"auto"`` takes a closed form where there is one, else ``"taylor"``
             for up to eight massive bodies or charges that attract or repel each other, alone or in uniform, electric
             and magnetic fields and rotating frames, where few springs hold all bodies, under forces that are linear in
-            places and velocities, beside formulas (`ExpressionForce`) of polynomials, sines and cosines, and for rigid
-            bodies that nothing but their weight and torques along their axes turn, ``"dop853"`` beside other formulas,
-            of which its shorter steps see more, else ``"verner98"``. A method named here always runs.
+            places and velocities, beside formulas (`ExpressionForce`) of polynomials, sines and cosines, for rigid
+            bodies that nothing but their weight and torques along their axes turn, and for those with two equal moments
+            that springs hold, ``"dop853"`` beside other formulas, of which its shorter steps see more, else
+            ``"verner98"``. A method named here always runs.
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         time_transformation : {"potential_energy", "distance"}, optional

@@ -90,17 +90,20 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
         boost = float(mass.sum()) * _size(v) * EPSILON * (_size(v) + span * _size(a))
         return invariants.energy - told["value"], 64 * (EPSILON * scale + 3 * (work + boost))
     if event.kind == "expression":
-        # What the roundings of all numbers make of it.
+        # What the roundings of all numbers make of it: by its slopes, or at once where it turns between two numbers.
         function, near = told["expression"], EPSILON * (_size(x) + moved)
         value = float(function(scene.t0, x, v))
         boost = EPSILON * (_size(v) + span * _size(scene.acceleration()))
-        nudge, changes = 2.0**-20, 0.0
+        changes = 0.0
         for array, digits in ((x, near), (v, boost)):
             for at in np.ndindex(array.shape):
-                beside = array.copy()
-                beside[at] += nudge * (digits / EPSILON)
-                state = (beside, v) if array is x else (x, beside)
-                changes += abs(float(function(scene.t0, *state)) - value) / nudge * EPSILON
+                by_number = []
+                for nudge in (2.0**-20, EPSILON):
+                    beside = array.copy()
+                    beside[at] += nudge * (digits / EPSILON)
+                    state = (beside, v) if array is x else (x, beside)
+                    by_number.append(abs(float(function(scene.t0, *state)) - value) / nudge * EPSILON)
+                changes += max(by_number)
         return value, 64 * (changes + EPSILON)
     if event.kind == "plane":
         normal = np.array(told["normal"])

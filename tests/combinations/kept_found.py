@@ -410,4 +410,21 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             outputs=3,
         ),
     ),
+    # Two zeros of one event in the step that another ends, both told at its end: one is ahead.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="auto",
+            bodies=8,
+            forces=(("PostNewtonian", 63),),
+            seed=65535,
+            at_origin=True,
+            drifting=True,
+            members=5,
+            own=("mass",),
+            steps=1,
+            backward=True,
+            events=(("energy", 41), ("energy", 84), ("energy", 41)),
+        ),
+    ),
 ]

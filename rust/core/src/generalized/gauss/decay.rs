@@ -34,9 +34,11 @@ pub(super) fn error_of_mean(coefficients: [f64; WIDTH], noise: f64) -> f64 {
     if last <= 0.0 {
         return 0.0;
     }
-    // They fall twice from these to the last, eight times from there to those that are left out.
+    // They fall twice from these to the last, and eight times from there to those that are left out; four times as much as they
+    // fall is allowed for, so the power is more than four.
     let fall = last / (FLAT * before);
-    if fall < 1.0 { last * (fall * fall) * (fall * fall) } else { last }
+    let square = fall * fall;
+    if fall < 1.0 { last * (square * square * fall) } else { last }
 }
 
 #[cfg(test)]

@@ -21,6 +21,10 @@ const DOUBLINGS: i32 = 36;
 /// So many times what a last digit of all numbers makes of an energy is rounding.
 const ROUNDINGS: f64 = 8.0;
 
+/// Two zeros of a step by which a function turns at nothing are no farther apart, as fractions of it: the root of a rounding, and
+/// some.
+const TURNING: f64 = 1e-7;
+
 /// The end of a run, as steps come to it.
 const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
 
@@ -130,7 +134,9 @@ impl Watch<'_> {
         };
         // What has a zero ahead has those after it ahead, too, whatever its sign is.
         let mut is_ahead = vec![false; self.events.len()];
-        for &((_, rises), event) in later {
+        // A value of nothing tells of one zero, or of two about the place where it turns.
+        let mut of_nothing: Vec<Option<f64>> = vec![None; self.events.len()];
+        for &((theta, rises), event) in later {
             let Some(&(which, _)) = self.events.get(event).filter(|(which, _)| *which != end.which) else {
                 continue;
             };
@@ -139,7 +145,13 @@ impl Watch<'_> {
             }
             let sight = self.sight(unit, event, (&self.inside, elapsed), ticker)?;
             let zero = self.rounding_as_told(unit, event, (&sight, &self.inside, elapsed), &told, ticker)?;
-            if sight.value.abs() <= zero || (sight.value > 0.0) == rises {
+            let first = of_nothing[event];
+            let is_nothing = sight.value.abs() <= zero && first.is_none_or(|first| theta - first < TURNING);
+            if is_nothing {
+                of_nothing[event] = Some(first.unwrap_or(theta));
+            }
+            let is_behind = sight.value.abs() > zero && (sight.value > 0.0) == rises;
+            if is_nothing || is_behind {
                 self.counts[event] += 1;
                 self.found.push(Found { which, ..end.clone() });
             } else {
