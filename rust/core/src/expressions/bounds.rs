@@ -24,6 +24,8 @@ enum Operation {
     Product(usize, usize),
     Quotient(usize, usize),
     Angle(usize, usize),
+    /// Sine and cosine, one after the other: a rate has the one where the value has the other.
+    Waves(usize),
     Call(Function, usize),
     Power(usize, f64),
 }
@@ -33,6 +35,8 @@ enum Operation {
 pub struct Bounds {
     variables: usize,
     operations: Box<[Operation]>,
+    /// Places of all that is found.
+    places: usize,
     roots: Box<[usize]>,
 }
 
@@ -40,7 +44,8 @@ impl Bounds {
     /// Of these nodes, without parameters, of so many variables.
     pub fn new(graph: &Graph, roots: &[Id], variables: usize) -> Self {
         let mut places: FxHashMap<Id, usize> = FxHashMap::default();
-        let mut operations = Vec::new();
+        let (mut operations, mut next) = (Vec::new(), variables + 1);
+        let mut waves: FxHashMap<Id, usize> = FxHashMap::default();
         for id in graph.reachable(roots) {
             let of = |id: Id| places[&id];
             let operation = match *graph.node(id) {
@@ -63,28 +68,40 @@ impl Bounds {
                 Node::Product(a, b) => Operation::Product(of(a), of(b)),
                 Node::Quotient(a, b) => Operation::Quotient(of(a), of(b)),
                 Node::Angle(y, x) => Operation::Angle(of(y), of(x)),
+                Node::Call(function @ (Function::Sin | Function::Cos), a) => {
+                    let first = *waves.entry(a).or_insert_with(|| {
+                        operations.push(Operation::Waves(of(a)));
+                        next += 2;
+                        next - 2
+                    });
+                    let _ = places.insert(id, first + usize::from(function == Function::Cos));
+                    continue;
+                }
                 Node::Call(function, a) => Operation::Call(function, of(a)),
                 Node::Power(a, exponent) => Operation::Power(of(a), number(exponent)),
             };
-            let _ = places.insert(id, variables + 1 + operations.len());
+            let _ = places.insert(id, next);
             operations.push(operation);
+            next += 1;
         }
         Self {
             variables,
             operations: operations.into(),
+            places: next,
             roots: roots.iter().map(|root| places[root]).collect(),
         }
     }
 
     /// The numbers that [`find`](Self::find) works with: two of each variable, of the time, and of what is made of them.
     pub fn room(&self) -> usize {
-        2 * (self.variables + 1 + self.operations.len())
+        2 * self.places
     }
 
     /// Finds the bounds of all, those of variables and time being there.
     #[inline(always)]
     pub fn find<S: Scalar>(&self, numbers: &mut [S]) {
-        for (index, operation) in self.operations.iter().enumerate() {
+        let mut place = 2 * (self.variables + 1);
+        for operation in &self.operations {
             let found = match *operation {
                 Operation::Constant(value) => settled([S::splat(value); 2]),
                 Operation::Sum(constant, ref terms) => {
@@ -103,14 +120,20 @@ impl Bounds {
                 Operation::Product(a, b) => product(at(numbers, a), at(numbers, b)),
                 Operation::Quotient(a, b) => quotient(at(numbers, a), at(numbers, b)),
                 Operation::Angle(y, x) => angle(at(numbers, y), at(numbers, x)),
+                Operation::Waves(a) => {
+                    let [sine, cosine] = waves(at(numbers, a));
+                    numbers[place..place + 2].copy_from_slice(&sine);
+                    place += 2;
+                    cosine
+                }
                 Operation::Call(function, a) => call(function, at(numbers, a)),
                 Operation::Power(a, exponent) => {
                     let [low, high] = at(numbers, a);
                     hull(low.raised(exponent), high.raised(exponent))
                 }
             };
-            let place = 2 * (self.variables + 1 + index);
             numbers[place..place + 2].copy_from_slice(&found);
+            place += 2;
         }
     }
 
@@ -185,6 +208,15 @@ fn wave<S: Real>(value: S, slope: S, reach: S) -> Between<S> {
     [(value.min(turned) - aside).max(-one), (value.max(turned) + aside).min(one)]
 }
 
+/// Sine and cosine.
+#[inline(always)]
+fn waves<S: Scalar>([low, high]: Between<S>) -> [Between<S>; 2] {
+    let half = S::splat(0.5);
+    let (sine, cosine) = functions::sin_cos(half * (low + high));
+    let reach = half * (high - low);
+    [wave(sine, cosine, reach), wave(cosine, sine, reach)]
+}
+
 /// The angle of the points of a rectangle.
 #[inline(always)]
 fn angle<S: Scalar>(y: Between<S>, x: Between<S>) -> Between<S> {
@@ -195,21 +227,10 @@ fn angle<S: Scalar>(y: Between<S>, x: Between<S>) -> Between<S> {
 
 #[inline(always)]
 fn call<S: Scalar>(function: Function, x: Between<S>) -> Between<S> {
-    let half = S::splat(0.5);
-    let (middle, reach) = (half * (x[0] + x[1]), half * (x[1] - x[0]));
     let word = word::CALL + function as u16;
     match function {
-        Function::Sin => {
-            let (sine, cosine) = functions::sin_cos(middle);
-            wave(sine, cosine, reach)
-        }
-        Function::Cos => {
-            let (sine, cosine) = functions::sin_cos(middle);
-            wave(cosine, sine, reach)
-        }
         Function::Tan => {
-            let (sine, cosine) = functions::sin_cos(middle);
-            let has_pole = has_zero(wave(cosine, sine, reach));
+            let has_pole = has_zero(waves(x)[1]);
             or_any::<S>(has_pole.not(), hull(x[0].called(word), x[1].called(word)))
         }
         Function::Sqrt => settled([x[0].max(S::zero()).sqrt(), x[1].sqrt()]),

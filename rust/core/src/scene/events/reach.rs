@@ -32,7 +32,7 @@ pub(crate) struct Reach {
     wider: f64,
     /// How many steps go by before there is one.
     wait: u32,
-    /// Whether the bounds in force are those of the region, and whether these have told too little.
+    /// Whether the bounds in force are those of the region, and whether the last ones have told too little.
     of_region: bool,
     too_wide: bool,
 }
@@ -119,7 +119,9 @@ impl Reach {
     pub(crate) fn may_be_zero<S: Scalar>(&mut self, numbers: &mut [S], lanes: S::Mask) -> S::Mask {
         let places = self.places();
         let mut held = S::Mask::splat(true);
-        for (here, region) in numbers[..places].chunks_exact(2).zip(numbers[places..2 * places].chunks_exact(2)) {
+        for (here, region) in
+            numbers[..places].chunks_exact(2).zip(numbers[places..2 * places].chunks_exact(2))
+        {
             held = held.and(region[0].less_equal(here[0])).and(here[1].less_equal(region[1]));
         }
         self.of_region = held.or(lanes.not()).all();
@@ -163,16 +165,16 @@ impl Reach {
     ) -> S::Mask {
         let same = (S::zero().less(ends[0]).and(S::zero().less(ends[1])))
             .or(ends[0].less(S::zero()).and(ends[1].less(S::zero())));
-        let Parts { here, told, room, .. } = self.parts(numbers);
+        let Parts { here, region, told, room, .. } = self.parts(numbers);
         let mut unsettled = lanes.and(same).and(stays(told, ends, h).not());
         if self.of_region && unsettled.any() {
             find(&self.bounds, here, told, room);
             unsettled = unsettled.and(is_not_zero([told[0], told[1]]).or(stays(told, ends, h)).not());
-            self.of_region = false;
-            if !core::mem::replace(&mut self.too_wide, true) {
-                self.wider = (0.5 * self.wider).max(WIDEST[0]);
-                self.wait = if self.wider > WIDEST[0] { 0 } else { WAIT };
-            }
+            // The next one is to be smaller.
+            region.fill(S::splat(f64::NAN));
+            self.too_wide = true;
+            self.wait = if self.wider > WIDEST[0] { 0 } else { WAIT };
+            self.wider = (0.5 * self.wider).max(WIDEST[0]);
         }
         lanes.and(same.not()).or(unsettled)
     }
@@ -233,7 +235,9 @@ fn stays<S: Real>(told: &[S], [start, end]: [S; 2], h: S) -> S::Mask {
     let is_below = start.less(S::zero());
     let (a, b) = (h * told[2], h * told[3]);
     let (low, high) = (a.min(b), a.max(b));
-    let (low, high) = (S::select(is_below, -high, low), S::select(is_below, -low, high));
+    // Differences: they are compiled in place.
+    let (under, over) = (S::zero() - high, S::zero() - low);
+    let (low, high) = (S::select(is_below, under, low), S::select(is_below, over, high));
     let (start, end) = (start.abs(), end.abs());
     let meet = high * start - low * end + low * high;
     S::zero().less_equal(low).or(high.less_equal(S::zero())).or(S::zero().less(meet))
