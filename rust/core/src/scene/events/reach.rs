@@ -242,3 +242,39 @@ fn stays<S: Real>(told: &[S], [start, end]: [S; 2], h: S) -> S::Mask {
     let meet = high * start - low * end + low * high;
     S::zero().less_equal(low).or(high.less_equal(S::zero())).or(S::zero().less(meet))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_stays_is_nowhere_zero(
+            start in -1.0..1.0_f64, parts in prop::collection::vec(0.0..1.0_f64, 1..12),
+            slopes in [-3.0..3.0_f64, -3.0..3.0], backwards in proptest::bool::ANY,
+        ) {
+            // Any broken line whose slopes are in the bounds.
+            let [low, high] = [slopes[0].min(slopes[1]), slopes[0].max(slopes[1])];
+            let step = if backwards { -1.0 } else { 1.0 } / parts.len() as f64;
+            let mut values = vec![start];
+            for part in &parts {
+                values.push(values[values.len() - 1] + step * (low + part * (high - low)));
+            }
+            let ends = [start, values[parts.len()]];
+            if ends[0] * ends[1] > 0.0 && stays(&[-1.0, 1.0, low, high], ends, step * parts.len() as f64) {
+                prop_assert!(values.iter().all(|value| value * start > 0.0), "{values:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_far_from_zero_stays_and_what_may_turn_there_does_not() {
+        let told = |low: f64, high: f64| [-1.0, 1.0, low, high];
+        assert!(stays(&told(-1.0, 1.0), [0.6, 0.6], 1.0) && !stays(&told(-1.0, 1.0), [0.4, 0.4], 1.0));
+        assert!(stays(&told(-1.0, 1.0), [-0.6, -0.6], -1.0) && !stays(&told(-1.0, 1.0), [-0.4, -0.4], 1.0));
+        // It rises from the start, and backwards falls to the end.
+        assert!(stays(&told(0.0, 9.0), [1e-9, 3.0], 1.0) && stays(&told(0.1, 9.0), [3.0, 1e-9], -1.0));
+        assert!(!stays(&told(f64::NEG_INFINITY, f64::INFINITY), [1.0, 1.0], 1.0));
+    }
+}
