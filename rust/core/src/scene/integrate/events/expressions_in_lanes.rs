@@ -32,8 +32,6 @@ pub(super) struct ExpressionAbreast {
     looks_at_velocities: bool,
     /// Coordinates, velocities and accelerations at the last node, and at this one.
     ends: [Vec<Lanes>; 2],
-    /// Value and rate at the last node, which no step after it changes where velocities are not looked at.
-    last: [Lanes; 2],
     reach: Option<(Reach, Vec<Lanes>)>,
 }
 
@@ -50,7 +48,6 @@ impl ExpressionAbreast {
             rows: coordinates.map(row).collect(),
             looks_at_velocities: formula.looks_at_velocities,
             ends: [0, 1].map(|_| vec![Lanes::zero(); 3 * formula.coordinates.len()]),
-            last: [Lanes::zero(); 2],
             reach: reach(formula),
         })
     }
@@ -73,8 +70,7 @@ fn eight_units<V: Vector8 + Scalar>(
     bodies: &Bodies,
     state: &State<Lanes>,
 ) -> Bits {
-    let ExpressionAbreast { machine, rows, looks_at_velocities, ends: [before, after], last, reach } =
-        abreast;
+    let ExpressionAbreast { machine, rows, looks_at_velocities, ends: [before, after], reach } = abreast;
     let h = V::load(*h);
     let n = before.len() / 3;
     let [length, speed] = [V::splat(bodies.factors[0]), V::splat(bodies.factors[1])];
@@ -92,15 +88,7 @@ fn eight_units<V: Vector8 + Scalar>(
     let near = match reach {
         Some(reach) => bounded::<V>(machine, reach, lanes, [before, after], h),
         None => {
-            let end = run::<V>(machine, after);
-            let start = if *looks_at_velocities {
-                run::<V>(machine, before)
-            } else {
-                [V::load(last[0]), V::load(last[1])]
-            };
-            for which in 0..2 {
-                last[which] = V::select(lanes, end[which], start[which]).store();
-            }
+            let [start, end] = [run::<V>(machine, before), run::<V>(machine, after)];
             keeps_clear(cubic([start[0], end[0]], [start[1], end[1]], h)).not()
         }
     };
