@@ -196,10 +196,10 @@ impl Reach {
     pub(crate) fn told(&self, numbers: &mut [f64], ends: [f64; 2], h: f64) -> Told {
         let Parts { here, told, room, .. } = self.parts(numbers);
         find(&self.bounds, here, told, room);
-        let crosses = !(ends[0] * ends[1] > 0.0);
-        if is_not_zero([told[0], told[1]]) || (!crosses && stays(told, ends, h)) {
+        let keeps_sign = ends[0] * ends[1] > 0.0;
+        if is_not_zero([told[0], told[1]]) || (keeps_sign && stays(told, ends, h)) {
             Told::Clear
-        } else if crosses && (told[2] > 0.0 || told[3] < 0.0) {
+        } else if !keeps_sign && (told[2] > 0.0 || told[3] < 0.0) {
             Told::Crosses
         } else {
             Told::Unknown
