@@ -169,3 +169,29 @@ def test_two_constraints_of_one_light_coordinate(light: float, method: str) -> N
     a, b = 0.5 * end**2 * np.linalg.solve(masses, forces)
     # A constant acceleration, which all methods have, to roundings of a few hundred steps.
     np.testing.assert_allclose(out.position[-1], [a, b, -2.0 * a - b, -a], rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "verner98", "taylor"])
+def test_a_coordinate_of_no_mass_is_held_by_a_constraint(method: Any) -> None:
+    x, y, vx, vy = sp.symbols("x y vx vy", real=True)
+    system = vv.Lagrangian(
+        vx**2 / 2 - x**2 / 2 - y,
+        [x, y],
+        velocities=[vx, vy],
+        constraints=[y - x**2],
+        position=[1.0, 1.0],
+        velocity=[0.5, 1.0],
+    )
+    out = system.run([1.0, 7.0], method=method, rtol=1e-12)
+    # With y = x² it is an oscillator of ω² = 3; the constraint pulls y with the force against its weight, λ = 1.
+    omega = np.sqrt(3.0)
+    exact = np.cos(omega * out.t) + 0.5 / omega * np.sin(omega * out.t)
+    np.testing.assert_allclose(out.position[:, 0], exact, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(out.position[:, 1], out.position[:, 0] ** 2, rtol=0.0, atol=4e-16)
+    np.testing.assert_allclose(out.reactions[:, 0], 1.0, rtol=0.0, atol=1e-12)
+
+
+def test_a_coordinate_of_no_mass_that_nothing_holds_is_refused() -> None:
+    x, y, vx, vy = sp.symbols("x y vx vy", real=True)
+    with pytest.raises(vv.InvalidInput, match="coordinate 'y' vanishes identically"):
+        vv.Lagrangian(vx**2 / 2 - y * x, [x, y], velocities=[vx, vy], constraints=[x - 1])

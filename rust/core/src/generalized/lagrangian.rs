@@ -11,14 +11,28 @@ use crate::expressions::program::{LinearSystem, Output};
 use crate::ode::system::Form;
 use rustc_hash::FxHashMap;
 
+/// Which coordinates are held by constraints: these may have no mass, which the others then bring.
+fn held(source: &mut Source, q: &[Id], v: &[Id]) -> Vec<bool> {
+    let Source { graph, holonomic, nonholonomic, .. } = source;
+    let mut is_held = vec![false; q.len()];
+    let places = holonomic.iter().map(|&of| (of, q));
+    for (of, by) in places.chain(nonholonomic.iter().map(|&of| (of, v))) {
+        for (is_held, slope) in is_held.iter_mut().zip(graph.gradient(of, by)) {
+            *is_held |= !graph.is_zero(slope);
+        }
+    }
+    is_held
+}
+
 /// Derives the equations of motion.
 ///
 /// # Errors
-/// A coordinate without kinetic energy.
+/// A coordinate without kinetic energy that no constraint holds.
 pub(super) fn derive(mut source: Source) -> Result<Derived> {
     constraints::check(&mut source)?;
     let n = source.coordinates;
     let (q, v) = source.halves();
+    let is_held = held(&mut source, &q, &v);
     let graph = &mut source.graph;
     let one = graph.constant(1.0);
 
@@ -33,7 +47,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
             mass[i][j] = column[i - j];
             mass[j][i] = column[i - j];
         }
-        if mass[j].iter().all(|&entry| graph.is_zero(entry)) {
+        if !is_held[j] && mass[j].iter().all(|&entry| graph.is_zero(entry)) {
             return Err(degenerate(j));
         }
     }

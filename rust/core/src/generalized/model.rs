@@ -286,7 +286,7 @@ pub(super) fn degenerate(coordinate: usize) -> Error {
         "L",
         format!(
             "degenerate: the second derivative of L with respect to the velocity of coordinate {coordinate} vanishes \
-             identically, so it has no acceleration; make it a multiplier (constraints=) or drop it"
+             identically, so it has no acceleration; make it a multiplier (constraints=), hold it by a constraint, or drop it"
         ),
     )
 }
