@@ -6,6 +6,7 @@ Where constraints make up for what is missing, there is one, the same as with th
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest

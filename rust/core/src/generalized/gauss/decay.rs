@@ -25,20 +25,20 @@ pub(super) fn coefficients(table: &Table) -> Option<[Lanes; WIDTH]> {
     (table.stages == WIDTH).then(|| core::array::from_fn(of_stage))
 }
 
-/// By how much the mean of rates errs, of which noise explains nothing.
-pub(super) fn error_of_mean(coefficients: [f64; WIDTH], noise: f64) -> f64 {
+/// By how much the mean of rates errs, and how large the last coefficients are, of which noise explains nothing.
+pub(super) fn error_of_mean(coefficients: [f64; WIDTH], noise: f64) -> (f64, f64) {
     let [.., a, b, c, d] = coefficients.map(f64::abs);
     let (before, last) = (if a > b { a } else { b }, if c > d { c } else { d });
     // The last takes the noise of the stages by the sum of its weights, which is less.
     let last = last - (2 * WIDTH - 1) as f64 * noise;
     if last <= 0.0 {
-        return 0.0;
+        return (0.0, 0.0);
     }
-    // They fall twice from these to the last, and eight times from there to those that are left out; four times as much as they
-    // fall is allowed for, so the power is more than four.
+    // They fall twice from these to the last, and nine times from there to those that are left out; four times as much as they
+    // fall is allowed for.
     let fall = last / (FLAT * before);
     let square = fall * fall;
-    if fall < 1.0 { last * (square * square * fall) } else { last }
+    (if fall < 1.0 { last * (square * square * fall) } else { last }, last)
 }
 
 #[cfg(test)]
@@ -68,7 +68,7 @@ mod tests {
         let integral = |x: f64| 0.5 * (x * root(x) + width * width * (x / width).asinh());
         let exact = integral(1.0 - at) - integral(-at);
         let mean: f64 = (0..WIDTH).map(|k| GAUSS16.b[0].0[k] * root(GAUSS16.c.0[k] - at)).sum();
-        ((mean - exact).abs(), error_of_mean(of(|c| root(c - at)), 0.0))
+        ((mean - exact).abs(), error_of_mean(of(|c| root(c - at)), 0.0).0)
     }
 
     #[test]
@@ -87,9 +87,9 @@ mod tests {
     fn what_is_smooth_or_noise_is_told_to_err_by_nothing() {
         // A step turns by less than a radian, or is far from a pole beside its length.
         for coefficients in [of(|c| (0.5 * c).sin()), of(|c| 1.0 / (3.0 + c))] {
-            let told = error_of_mean(coefficients, 0.0);
+            let (told, _) = error_of_mean(coefficients, 0.0);
             assert!(told < 1e-13, "{told}");
         }
-        assert_eq!(error_of_mean(of(|c| (c - 0.4).hypot(1e-3)), 1.0), 0.0);
+        assert_eq!(error_of_mean(of(|c| (c - 0.4).hypot(1e-3)), 1.0), (0.0, 0.0));
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
 //! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
-//! in the next one, and by how its terms fall ([`decay`]); where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
+//! in the next one, and by how its terms fall ([`decay`], [`between`]); where energy is conserved steps are chosen at the start and then held ([`pace`]). What is at rest is measured
 //! by what will push it ([`rest`]), and rounding by nothing
 //! ([`rounding`], [`noise`]). Of an ensemble the lanes are trajectories ([`eight`]), each with the operations that it has
 //! alone.
 
+mod between;
 mod changes;
 mod columns;
 mod columns_end;
@@ -25,6 +26,7 @@ mod visited;
 
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::looks::Looks;
+use between::Between;
 pub use eight::GaussEight;
 use ending::Ending;
 pub use pace::Steps;
@@ -69,6 +71,7 @@ struct Beyond {
     ending: Ending,
     /// See [`decay::coefficients`].
     coefficients: Option<[Lanes; WIDTH]>,
+    between: Option<Between>,
     rounding: Rounding,
 }
 
@@ -84,6 +87,7 @@ impl Method {
         let found = || Beyond {
             ending: Ending::of(self.table),
             coefficients: decay::coefficients(self.table),
+            between: Between::of(self.table),
             rounding: Rounding::of(self.table),
         };
         self.beyond.get_or_init(found)

@@ -47,6 +47,8 @@ pub struct GaussStep {
     length_tried: f64,
     /// Where the stages lead at the end of the step.
     led: Vec<Lanes>,
+    /// By how much rates between the stages are not those of the polynomial, where that was looked at.
+    missed_between: Vec<f64>,
     /// Rates at the beginning of the first step, if it was chosen here.
     begin: Vec<f64>,
     /// Those of a shadow step.
@@ -84,6 +86,7 @@ impl GaussStep {
             led: vec![Lanes([0.0; WIDTH]); evaluated],
             length: 0.0,
             length_tried: 0.0,
+            missed_between: vec![0.0; evaluated],
             begin: vec![],
             shadow: Stages::new(evaluated),
             edges: [vec![0.0; evaluated], vec![0.0; evaluated]],
@@ -222,10 +225,13 @@ impl Trial<f64> for GaussStep {
         });
         self.pace.felt = if iterated.converged { self.felt(h) } else { f64::INFINITY };
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
-        self.pace.error = if self.pace.may_err(self.steps) { self.error(h) } else { 0.0 };
-        if !is_known && self.pace.errs(self.steps) {
-            self.look_for_noise(t, state);
-            self.pace.error = self.error(h);
+        self.pace.error = if self.pace.may_err(self.steps) { self.error(h, false) } else { 0.0 };
+        if self.pace.errs(self.steps) {
+            if !is_known {
+                self.look_for_noise(t, state);
+            }
+            self.look_between((t, h), state);
+            self.pace.error = self.error(h, true);
         }
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });

@@ -1,6 +1,8 @@
 //! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
 //! stages, and what lies between these unseen.
 
+use super::super::between::shows;
+use super::super::columns::NOTHING;
 use super::super::decay::error_of_mean;
 use super::super::told::{led, missed, smoothness};
 use super::GaussEight;
@@ -8,7 +10,7 @@ use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
-use crate::ode::system::{System, Taken, Visited};
+use crate::ode::system::{Form, System, Taken, Visited};
 
 impl GaussEight {
     /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds. What
@@ -63,13 +65,60 @@ impl GaussEight {
     ) {
         self.paces.iter_mut().for_each(|pace| pace.error = 0.0);
         let asked = self.lanes(|_, pace| pace.may_err(self.steps)).and(running);
-        self.take_errors(h, asked);
-        let again = self.lanes(|_, pace| pace.errs(self.steps)).and(known.not());
-        self.look_for_noise(t, state, again);
-        self.take_errors(h, again);
+        self.take_errors(h, asked, None);
+        let again = self.lanes(|_, pace| pace.errs(self.steps)).and(running);
+        if again.any() {
+            self.look_for_noise(t, state, again.and(known.not()));
+            let missed = self.missed_between((t, h), state, again);
+            self.take_errors(h, again, Some(&missed));
+        }
     }
 
-    fn take_errors(&mut self, h: Lanes, asked: Bits) {
+    /// By how much rates between the stages are not those of the polynomials.
+    fn missed_between(&mut self, (t, h): (Lanes, Lanes), state: &State<Lanes>, asked: Bits) -> Vec<Lanes> {
+        let Self { beyond, table, form, machine, columns, taken, .. } = self;
+        let (y, n) = (state.all().0, form.evaluated());
+        let mut missed = vec![Lanes::zero(); n];
+        let Some(between) = &beyond.between else { return missed };
+        let led_by = |weights: &[Lanes; WIDTH]| {
+            let mut to = vec![NOTHING; n];
+            led(weights, table.stages, &columns.rates, &mut to);
+            to
+        };
+        let (way, way_of_way, rates) =
+            (led_by(&between.way), led_by(&between.way_of_way), led_by(&between.rates));
+        let mut there = y.to_vec();
+        for place in 0..WIDTH {
+            let x = Lanes::splat(between.places.0[place]);
+            for i in 0..n {
+                match form {
+                    Form::FirstOrder(_) => there[i] = y[i] + h * way[i][place],
+                    Form::SecondOrder(_) => {
+                        there[n + i] = y[n + i] + h * way[i][place];
+                        there[i] = y[i] + h * (x * y[n + i] + h * way_of_way[i][place]);
+                    }
+                }
+            }
+            machine.run(t + h * x, &there);
+            for (i, missed) in missed.iter_mut().enumerate() {
+                let away = (machine.output(i) - rates[i][place]).abs();
+                for (most, away) in missed.0.iter_mut().zip(away.0) {
+                    // What is no number counts as infinite.
+                    let away = if away.is_nan() { f64::INFINITY } else { away };
+                    *most = if away > *most { away } else { *most };
+                }
+            }
+        }
+        for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
+            taken[lane] += 1;
+        }
+        for (missed, &noise) in missed.iter_mut().zip(&columns.noise) {
+            *missed = *missed - Lanes::splat(beyond.ending.noise) * noise;
+        }
+        missed
+    }
+
+    fn take_errors(&mut self, h: Lanes, asked: Bits, missed_between: Option<&[Lanes]>) {
         let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return };
         // What a shadow step would begin with is of nobody before there is one.
         let Self { table, columns, shadow, paces, .. } = self;
@@ -78,9 +127,11 @@ impl GaussEight {
             let limit = columns.limit(lane);
             pace.error = 0.0;
             for (i, row) in shadow.guess.iter().enumerate() {
-                let error = error_of_mean(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
+                let (error, last) = error_of_mean(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
                 let part = error * h.0[lane].abs() * Real::min(columns.scales[i].0[lane], limit);
-                pace.error = if part > pace.error { part } else { pace.error };
+                if part > pace.error && missed_between.is_none_or(|missed| shows(missed[i].0[lane], last)) {
+                    pace.error = part;
+                }
             }
         }
     }

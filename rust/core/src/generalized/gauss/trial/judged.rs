@@ -1,6 +1,7 @@
 //! By what a tried step of one trajectory is judged before it is taken: how smooth the motion is, whether the ends are those of
 //! the stages, and what lies between these unseen.
 
+use super::super::between::shows;
 use super::super::decay::error_of_mean;
 use super::super::noise;
 use super::super::rounding::{HARDLY, ROUNDING};
@@ -114,17 +115,52 @@ impl GaussStep {
         most
     }
 
-    /// By how much the step errs, as its polynomial tells, as a part of a size.
-    pub(super) fn error(&mut self, h: f64) -> f64 {
-        let Self { beyond, stages, led: coefficients, .. } = self;
+    /// Looks by how much rates between the stages are not those of the polynomial.
+    pub(super) fn look_between(&mut self, (t, h): (f64, f64), state: &State<f64>) {
+        let Self { beyond, form, machine, stages, led: there, missed_between, .. } = self;
+        let Some(between) = &beyond.between else { return };
+        let (y, n, h) = (state.all().0, form.evaluated(), Lanes::splat(h));
+        let numbers = |i: usize| Lanes::splat(y[i]);
+        led(&between.way, &stages.rates, there);
+        match form {
+            Form::FirstOrder(_) => {
+                for (i, (register, &way)) in machine.state().iter_mut().zip(&*there).enumerate() {
+                    *register = numbers(i) + h * way;
+                }
+            }
+            Form::SecondOrder(_) => {
+                for (i, (register, &way)) in machine.state().iter_mut().skip(n).zip(&*there).enumerate() {
+                    *register = numbers(n + i) + h * way;
+                }
+                led(&between.way_of_way, &stages.rates, there);
+                for (i, (register, &way)) in machine.state().iter_mut().zip(&*there).enumerate() {
+                    *register = numbers(i) + h * (between.places * numbers(n + i) + h * way);
+                }
+            }
+        }
+        machine.run(Lanes::splat(t) + h * between.places);
+        self.evaluations += 1;
+        led(&between.rates, &stages.rates, there);
+        for (i, missed) in missed_between.iter_mut().enumerate() {
+            let away = machine.output(i) - there[i];
+            *missed = largest(away.map(f64::abs)) - beyond.ending.noise * stages.noise[i];
+        }
+    }
+
+    /// By how much the step errs, as its polynomial tells, and rates between the stages show if these were looked at; as a part
+    /// of a size.
+    pub(super) fn error(&mut self, h: f64, is_looked_at: bool) -> f64 {
+        let Self { beyond, stages, led: coefficients, missed_between, .. } = self;
         let Some(rows) = &beyond.coefficients else { return 0.0 };
         led(rows, &stages.rates, coefficients);
         let limit = stages.limit();
         let mut most = 0.0;
         for (i, coefficients) in coefficients.iter().enumerate() {
-            let part =
-                error_of_mean(coefficients.0, stages.noise[i]) * h.abs() * Real::min(stages.scales[i], limit);
-            most = if part > most { part } else { most };
+            let (error, last) = error_of_mean(coefficients.0, stages.noise[i]);
+            let part = error * h.abs() * Real::min(stages.scales[i], limit);
+            if part > most && (!is_looked_at || shows(missed_between[i], last)) {
+                most = part;
+            }
         }
         most
     }
