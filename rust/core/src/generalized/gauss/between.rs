@@ -9,7 +9,7 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Rates between stages that are off by more than this part of the last terms show that these are none of a smooth motion: of
 /// motions that turn it is a tenth and more, of others five thousandths and less.
-const SHOWN: f64 = 0.015;
+pub(super) const SHOWN: f64 = 0.015;
 
 /// Places between the stages of a method with so many as lanes, and after the last.
 #[derive(Debug)]

@@ -9,7 +9,9 @@ use super::Table;
 use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Of what turns, the last two coefficients are at least this part of the two before.
-const FLAT: f64 = 0.25;
+pub(super) const FLAT: f64 = 0.25;
+/// The last takes the noise of the stages by the sum of its weights, which is no more than this.
+pub(super) const OF_NOISE: f64 = 15.0;
 
 /// What each stage contributes to the coefficients of the polynomial, in the lanes, of a method with so many stages as lanes.
 pub(super) fn coefficients(table: &Table) -> Option<[Lanes; WIDTH]> {
@@ -29,8 +31,7 @@ pub(super) fn coefficients(table: &Table) -> Option<[Lanes; WIDTH]> {
 pub(super) fn error_of_mean(coefficients: [f64; WIDTH], noise: f64) -> (f64, f64) {
     let [.., a, b, c, d] = coefficients.map(f64::abs);
     let (before, last) = (if a > b { a } else { b }, if c > d { c } else { d });
-    // The last takes the noise of the stages by the sum of its weights, which is less.
-    let last = last - (2 * WIDTH - 1) as f64 * noise;
+    let last = last - OF_NOISE * noise;
     if last <= 0.0 {
         return (0.0, 0.0);
     }

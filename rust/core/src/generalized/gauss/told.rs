@@ -4,7 +4,9 @@
 //! of one.
 
 use super::Table;
+use super::between::SHOWN;
 use super::columns::{Columns, NOTHING, Row, combined, larger};
+use super::decay::{FLAT, OF_NOISE};
 use super::rounding::{HARDLY, ROUNDING};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Mask;
@@ -135,11 +137,47 @@ fn missed_body<V: Vector8>(
     most.store()
 }
 
+/// By how much steps err, as [`error_of_mean`](super::decay::error_of_mean) has it of one, as parts of sizes; of what was looked
+/// at between the stages, where that shows it.
+#[inline(always)]
+fn errors_body<V: Vector8>(
+    weights: &[Lanes; WIDTH],
+    stages: usize,
+    columns: &Columns,
+    missed: Option<&[Lanes]>,
+    h: Lanes,
+) -> Lanes {
+    let limit = Lanes(core::array::from_fn(|lane| columns.limit(lane)));
+    let mut most = V::zero();
+    let rows = columns.rates.iter().zip(&columns.scales).zip(&columns.noise);
+    for (i, ((row, &scale), &noise)) in rows.enumerate() {
+        macro_rules! coefficient {
+            ($place:expr) => {
+                combined!(stages, row, j => V::splat(weights[j].0[$place])).abs()
+            };
+        }
+        let before = coefficient!(4).max(coefficient!(5));
+        let last = coefficient!(6).max(coefficient!(7)) - V::splat(OF_NOISE) * V::load(noise);
+        let fall = last / (V::splat(FLAT) * before);
+        let square = fall * fall;
+        let error = V::select(fall.less(V::one()), last * (square * square * fall), last);
+        let error = V::select(V::zero().less(last), error, V::zero());
+        let part = error * V::load(h).abs() * V::load(scale).min(V::load(limit));
+        let part = match missed {
+            Some(missed) => V::select(V::load(missed[i]).less(V::splat(SHOWN) * last), V::zero(), part),
+            None => part,
+        };
+        most = V::select(most.less(part), part, most);
+    }
+    most.store()
+}
+
 tiered! {
     pub(super) fn smoothness[][](table: &Table, columns: &Columns, of: (Lanes, Lanes), first: Bits) -> Lanes = smoothness_body;
     pub(super) fn kept[][](rates: &[Row], kept: Bits, before: &mut [Row]) -> () = kept_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
     pub(super) fn missed[][](weights: (&[Lanes; WIDTH], f64), stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
+    pub(super) fn errors[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, missed: Option<&[Lanes]>, h: Lanes) -> Lanes = errors_body;
     pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
 }

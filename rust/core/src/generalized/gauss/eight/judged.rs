@@ -1,10 +1,8 @@
 //! By what eight tried steps are judged before they are taken: how smooth the motion is, whether the ends are those of the
 //! stages, and what lies between these unseen.
 
-use super::super::between::shows;
 use super::super::columns::NOTHING;
-use super::super::decay::error_of_mean;
-use super::super::told::{led, missed, smoothness};
+use super::super::told::{errors, led, missed, smoothness};
 use super::GaussEight;
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -120,19 +118,9 @@ impl GaussEight {
 
     fn take_errors(&mut self, h: Lanes, asked: Bits, missed_between: Option<&[Lanes]>) {
         let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return };
-        // What a shadow step would begin with is of nobody before there is one.
-        let Self { table, columns, shadow, paces, .. } = self;
-        led(rows, table.stages, &columns.rates, &mut shadow.guess);
-        for (lane, pace) in paces.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
-            let limit = columns.limit(lane);
-            pace.error = 0.0;
-            for (i, row) in shadow.guess.iter().enumerate() {
-                let (error, last) = error_of_mean(row.map(|of| of.0[lane]), columns.noise[i].0[lane]);
-                let part = error * h.0[lane].abs() * Real::min(columns.scales[i].0[lane], limit);
-                if part > pace.error && missed_between.is_none_or(|missed| shows(missed[i].0[lane], last)) {
-                    pace.error = part;
-                }
-            }
+        let found = errors(rows, self.table.stages, &self.columns, missed_between, h);
+        for (lane, pace) in self.paces.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
+            pace.error = found.0[lane];
         }
     }
 
