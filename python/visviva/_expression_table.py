@@ -66,9 +66,9 @@ def looks_at_time(numbers: Iterable[float]) -> bool:
     return any(_OPERATIONS[operation] == "time" for operation, _ in _needed(numbers))
 
 
-def looks_at_velocities(numbers: Iterable[float]) -> bool:
-    """Whether anything in a table of a force depends on a velocity, the last three of its six variables."""
-    return any(_OPERATIONS[operation] == "variable" and value >= 3 for operation, value in _needed(numbers))
+def looks_at_velocities(numbers: Iterable[float], first: int = 3) -> bool:
+    """Whether anything in a table depends on a velocity: its last three variables, of a force from the fourth on."""
+    return any(_OPERATIONS[operation] == "variable" and value >= first for operation, value in _needed(numbers))
 
 
 def _needed(numbers: Iterable[float]) -> Iterator[tuple[int, float]]:
