@@ -24,6 +24,7 @@ __all__ = [
     "formulas",
     "looks_at_time",
     "looks_at_velocities",
+    "most_parameters",
     "parameter_names",
     "parameter_values",
     "table",
@@ -52,6 +53,11 @@ def table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]
 def parameter_names(numbers: Iterable[float]) -> tuple[str, ...]:
     """Give the names of the parameters that a table has, in the order of their values."""
     return tuple("".join(map(chr, letters)) for operation, _, letters in _rows(numbers) if operation == _NAME)
+
+
+def most_parameters(numbers: Sequence[float]) -> int:
+    """Give a number of parameters that a table has no more of, whether it is one or not."""
+    return numbers.count(_NAME)
 
 
 def parameter_values(numbers: Iterable[float], values: Sequence[float]) -> dict[str, float]:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from inspect import Parameter
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 
 from visviva import _core, _expression_table
 from visviva._arrays import float_array, positive
 from visviva._body_force import BodyForce, body_of, set_frozen
+from visviva._compiled import is_compiled
 from visviva._declared import unit_change
 from visviva._keywords import check_call, did_you_mean, known_keywords
 from visviva._moves import orthogonal
@@ -80,8 +81,8 @@ class ExpressionTorque(BodyForce):
     -----
     Functions are made of arithmetic and NumPy's functions, and no branches. A formula without the angular velocity goes
     with every method that turns bodies but ``taylor``, one with it also with no splitting. The energy that is told is
-    without its work. Nothing looks for a pulse that is narrower than a step: a `max_step` shorter than it, or an equal
-    step (`dt`), does not pass over it.
+    without its work. Methods that choose their steps look for pulses, walls and bumps that are narrower than a step, as
+    they do beside an `ExpressionForce`; equal steps (`dt`) may pass over one.
 
     References
     ----------
@@ -135,7 +136,8 @@ class ExpressionTorque(BodyForce):
         if isinstance(given, tuple | list) and all(isinstance(each, tuple | list) and len(each) == 2 for each in given):
             given = {str(name): value for name, value in given}  # as they are kept, and as files have them
         names, values = _expression_table.checked_parameters(given, _PLACES)
-        table = _recorded(function, names) if callable(function) else _kept(function)
+        is_kept = is_compiled(function) or not callable(function)
+        table = _kept(function) if is_kept else _recorded(cast("Callable[..., Any]", function), names)
         x, y, z, w = float_array("axes", axes, (4,)).tolist()
         units = {"length": length, "mass": mass, "time": time}
         set_frozen(
@@ -147,8 +149,10 @@ class ExpressionTorque(BodyForce):
             axes=(x, y, z, w),
             **{name: positive(name, unit, "unit") for name, unit in units.items()},
         )
-        # Which compiles it: whatever is wrong with it is refused here. What bodies are called only a scene knows.
-        _core.check_load(self._described(None))
+        # Which compiles it: whatever is wrong with it is refused here. What bodies are called only a scene knows, and
+        # what parameters there are only a table that is one.
+        any_values = [("", 0.0)] * max(len(names), _expression_table.most_parameters(table))
+        _core.check_load(self._described(None) | {"parameters": any_values})
         if set(known := _expression_table.parameter_names(table)) != set(names):
             raise InvalidInput("parameters", f"expected values of {list(known)}, got {dict(self.parameters)}")
         object.__setattr__(self, "parameters", tuple((name, dict(self.parameters)[name]) for name in known))

@@ -125,7 +125,7 @@ def test_a_magnet_keeps_its_energy(how: dict[str, Any]) -> None:
     spin = out.angular_velocity[:, 0]
     energy = np.einsum("ti,ij,tj->t", spin, STONE.inertia[0], spin) / 2 - 0.8 * axis @ FIELD
     np.testing.assert_allclose(energy, energy[0], rtol=0, atol=1e-9)
-    assert np.ptp(axis @ FIELD) > 0.5
+    assert np.ptp(axis @ FIELD) > 0.1
 
 
 def test_a_compass_is_a_pendulum_of_lagrange() -> None:
@@ -240,6 +240,47 @@ def test_a_formula_of_orientations_runs_back() -> None:
             vv.ExpressionTorque(looking).reversed()
 
 
+CHOSEN: list[dict[str, Any]] = [
+    {},
+    {"method": "dop853"},
+    {"method": "verner98", "rtol": 1e-8},
+    {"method": "tsitouras54"},
+]
+
+
+@pytest.mark.parametrize("how", CHOSEN, ids=str)
+@pytest.mark.parametrize("frame", ["space", "body"])
+@pytest.mark.parametrize("width", [1e-2, 1e-5])
+def test_a_pulse_is_not_passed_over(how: dict[str, Any], frame: Any, width: float) -> None:
+    """A kick of ∫ T dt = √π A w in a run of a thousand; other copies have it elsewhere, or none."""
+    pulse = vv.ExpressionTorque(
+        lambda t, q, w, size, at, width: (0, 0, size * np.exp(-(((t - at) / width) ** 2))),
+        frame=frame,
+        parameters={"size": 1.0 / width, "at": 437.0, "width": width},
+    )
+    wheel = vv.RigidBody(1.0, [0.5, 0.6, 0.9])
+    kick = np.sqrt(np.pi) / 0.9
+    out = vv.Scene(wheel, pulse).run(t=1000.0, **how)
+    assert out.angular_velocity[-1, 0, 2] == pytest.approx(kick, rel=1e-6)
+    at = np.array([3.0, 437.0, 800.0, 2000.0])
+    copies = vv.Scene(wheel, pulse).ensemble(parameters={pulse: {"at": at}}).run(t=1000.0, **how)
+    assert copies.angular_velocity[:, -1, 0, 2] == pytest.approx(np.where(at < 1000.0, kick, 0.0), rel=1e-6)
+    np.testing.assert_array_equal(copies[1].angular_velocity, out.angular_velocity)
+
+
+@pytest.mark.parametrize("how", CHOSEN[:2], ids=str)
+def test_a_narrow_bump_of_the_orientation_is_not_passed_over(how: dict[str, Any]) -> None:
+    """Its work at each passage is ∫ A exp(−(tan ½θ / w)²) dθ, which for a narrow one is 2 √π A w."""
+    bump = vv.ExpressionTorque(
+        lambda t, q, w, width: (0, 0, np.exp(-((q[2] / (width * q[3])) ** 2)) / width), parameters={"width": 1e-4}
+    )
+    start = vv.rigid.quaternion_from_rotation_vector([0.0, 0.0, -1.0])
+    wheel = vv.RigidBody(1.0, [0.5, 0.6, 0.9], orientation=start, angular_velocity=[0.0, 0.0, 2.0])
+    out = vv.Scene(wheel, bump).run(t=1.0, **how)
+    gained = 0.9 * (out.angular_velocity[-1, 0, 2] ** 2 - 4.0) / 2
+    assert gained == pytest.approx(2 * np.sqrt(np.pi), rel=1e-6)
+
+
 def test_what_is_no_number_ends_a_run() -> None:
     lost = vv.Scene(STONE, vv.ExpressionTorque(lambda t, q, w: (0, 0, np.sqrt(1.0 - t))))
     with pytest.raises(vv.Error):
@@ -262,6 +303,6 @@ def test_methods_that_take_none_say_so() -> None:
 
 
 def test_compiled_functions_go_elsewhere() -> None:
-    assert ctypes.cast(motor, ctypes.c_void_p).value
-    with pytest.raises(vv.InvalidInput, match=r"function: .*vv\.CompiledTorque"):
-        vv.ExpressionTorque(motor)
+    for compiled in (motor, ctypes.cast(motor, ctypes.c_void_p).value):
+        with pytest.raises(vv.InvalidInput, match=r"function: expected a function f\(t, .*vv\.CompiledTorque"):
+            vv.ExpressionTorque(compiled)

@@ -7,6 +7,7 @@
 
 mod apply;
 mod expressed;
+pub(super) mod unseen;
 mod written;
 
 use super::bodies::{Arrangement, LaneBody, RigidBodies, Start};

@@ -7,13 +7,14 @@ use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
 use crate::expressions::program::Output;
 use crate::expressions::table::{self, Parameters, Variables};
-use crate::expressions::{Code, Node};
+use crate::expressions::{Code, Graph, Id, Node};
+use crate::narrow::{Equations, Features};
 use crate::rigid::quaternion::{Quaternion, unit};
 use crate::words::number;
 use std::sync::Arc;
 
 /// Numbers that the expressions are of: a quaternion, then an angular velocity.
-const VARIABLES: usize = 7;
+pub(super) const VARIABLES: usize = 7;
 /// The first of the angular velocity.
 pub(super) const SPIN: usize = 4;
 
@@ -22,6 +23,8 @@ pub(super) const SPIN: usize = 4;
 pub struct Formula {
     pub(super) code: Arc<Code>,
     pub(super) looks_at_velocity: bool,
+    /// What may be too narrow for a step, of angular accelerations: a further parameter is what they are of the components.
+    pub(super) narrow: Option<Arc<Features>>,
     /// From the axes of space that the expressions know to those of the scene.
     pub(super) axes: Quaternion,
     /// The unit of time in the expressions, and that of torque, in those of the scene.
@@ -57,15 +60,29 @@ impl Formula {
                 ),
             ));
         }
+        let of_spin = |node: &Node| matches!(node, Node::Variable(index) if *index as usize >= SPIN);
         Ok(Self {
-            looks_at_velocity: graph
-                .any(&roots, |node| matches!(node, Node::Variable(index) if *index as usize >= SPIN)),
+            looks_at_velocity: graph.any(&roots, of_spin),
             code: Arc::new(compile(&graph, (VARIABLES, parameters), &[], &outputs).map_err(renamed)?),
+            narrow: features(graph, &roots, parameters)?.map(Arc::new),
             axes: unit("axes", axes)?,
             time,
             torque,
         })
     }
+}
+
+/// What may be too narrow for a step, of the angular accelerations.
+fn features(mut graph: Graph, roots: &[Id], parameters: usize) -> Result<Option<Features>> {
+    let unit = graph.parameter(parameters as u32);
+    let rates: Vec<Output> = roots.iter().map(|&root| Output::Node(graph.product(&[root, unit]))).collect();
+    Features::of(Equations {
+        graph: &mut graph,
+        numbers: VARIABLES,
+        parameters: parameters + 1,
+        systems: &[],
+        rates: &rates,
+    })
 }
 
 /// As users call what is wrong.

@@ -3,33 +3,66 @@
 use super::{Seen, Systems, lane_by_lane};
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
+use crate::narrow::Features;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::power_of_two::scale;
-use crate::rigid::motion::bodies::Start;
-use crate::rigid::motion::formula::{Formula, SPIN};
+use crate::rigid::motion::bodies::{LaneBody, Start};
+use crate::rigid::motion::formula::{Formula, VARIABLES};
 use crate::rigid::motion::loads::Load;
 use crate::rigid::motion::vectors::{product, turned, turned_back};
 use crate::rigid::quaternion::{Quaternion, conjugate};
 use crate::tiered;
+use std::sync::Arc;
 
 /// A formula for one body of each lane.
 #[derive(Clone)]
 pub(super) struct Expressed {
-    body: usize,
+    pub(super) way: Way,
     machine: Machine<Lanes>,
     in_body: bool,
-    looks_at_velocity: bool,
-    /// From the caller's axes in the body to the principal ones.
-    axes: [Lanes; 4],
-    /// From the formula's axes of space to the scene's, and back.
+    /// From the formula's axes of space to the scene's.
     space: Quaternion,
-    back: Quaternion,
-    /// What times and angular velocities are multiplied with, and the time at the start.
-    time: f64,
-    spin: f64,
-    t0: f64,
     /// The unit of torque.
-    torque: f64,
+    pub(super) torque: f64,
+    /// What may be too narrow for a step, and the parameters.
+    pub(super) narrow: Option<Arc<Features>>,
+    pub(super) parameters: Vec<Lanes>,
+}
+
+/// The way from the units and axes of the integration to those of the formula.
+#[derive(Clone)]
+pub(super) struct Way {
+    pub(super) body: usize,
+    /// From the caller's axes in the body to the principal ones.
+    pub(super) axes: [Lanes; 4],
+    /// From the scene's axes of space to the formula's.
+    pub(super) back: Quaternion,
+    /// What times and angular velocities are multiplied with, and the time at the start.
+    pub(super) time: f64,
+    pub(super) spin: f64,
+    pub(super) t0: f64,
+}
+
+impl Way {
+    /// The orientation of the caller's axes in the scene, and what the formula looks at: that in its own space, and the angular
+    /// velocity along them.
+    #[inline(always)]
+    pub(super) fn seen<V: Vector8>(
+        &self,
+        of: &LaneBody,
+        q: [V; 4],
+        momentum: [V; 3],
+    ) -> ([V; 4], [V; VARIABLES]) {
+        let axes = loaded(&self.axes);
+        let orientation = product(q, axes);
+        let [x, y, z, w] = product(splat(self.back), orientation);
+        let mut spin = turned_back(q, momentum);
+        for c in 0..3 {
+            spin[c] = V::load(of.inverse[c]) * spin[c] * V::splat(self.spin);
+        }
+        let [a, b, c] = turned_back(axes, spin);
+        (orientation, [x, y, z, w, a, b, c])
+    }
 }
 
 impl Expressed {
@@ -49,17 +82,20 @@ impl Expressed {
             .collect();
         let axes = |system: usize| conjugate(bodies.axes[starts[system][place].at]);
         Self {
-            body: systems.first + place,
+            way: Way {
+                body: systems.first + place,
+                axes: [0, 1, 2, 3].map(|part| lane_by_lane(starts.len(), |system| axes(system)[part])),
+                back: conjugate(formula.axes),
+                time: scale(1.0 / formula.time, units.time),
+                spin: scale(formula.time, -units.time),
+                t0: systems.t0 / formula.time,
+            },
             machine: Machine::new(formula.code.clone(), &parameters),
             in_body,
-            looks_at_velocity: formula.looks_at_velocity,
-            axes: [0, 1, 2, 3].map(|part| lane_by_lane(starts.len(), |system| axes(system)[part])),
             space: formula.axes,
-            back: conjugate(formula.axes),
-            time: scale(1.0 / formula.time, units.time),
-            spin: scale(formula.time, -units.time),
-            t0: systems.t0 / formula.time,
             torque: units.take(formula.torque, [2, 1, -2]),
+            narrow: formula.narrow.clone(),
+            parameters,
         }
     }
 
@@ -80,24 +116,16 @@ fn apply_body<V: Vector8 + Scalar>(
     seen: &Seen<'_>,
     torque: &mut [Lanes],
 ) {
-    let Expressed { body, machine, axes, .. } = expressed;
-    let (at, of) = (seen.arrangement.at(*body), &seen.arrangement.bodies[*body]);
+    let Expressed { way, machine, .. } = expressed;
+    let (at, of) = (seen.arrangement.at(way.body), &seen.arrangement.bodies[way.body]);
     let (q, v, torque) = (V::view(seen.q), V::view(seen.v), V::view_mut(torque));
-    let principal = [q[at], q[at + 1], q[at + 2], q[at + 3]];
-    let axes = [V::load(axes[0]), V::load(axes[1]), V::load(axes[2]), V::load(axes[3])];
-    let orientation = product(principal, axes);
+    let (orientation, numbers) =
+        way.seen(of, [q[at], q[at + 1], q[at + 2], q[at + 3]], [v[at], v[at + 1], v[at + 2]]);
     let (code, registers) = machine.parts();
     let outputs = code.output_registers();
     let registers = V::view_mut(registers);
-    registers[..SPIN].copy_from_slice(&product(splat(expressed.back), orientation));
-    if expressed.looks_at_velocity {
-        let mut spin = turned_back(principal, [v[at], v[at + 1], v[at + 2]]);
-        for c in 0..3 {
-            spin[c] = V::load(of.inverse[c]) * spin[c] * V::splat(expressed.spin);
-        }
-        registers[SPIN..SPIN + 3].copy_from_slice(&turned_back(axes, spin));
-    }
-    registers[SPIN + 3] = V::splat(expressed.time).multiply_add(V::load(*time), V::splat(expressed.t0));
+    registers[..VARIABLES].copy_from_slice(&numbers);
+    registers[VARIABLES] = V::splat(way.time).multiply_add(V::load(*time), V::splat(way.t0));
     execute::execute::<V, 1>(code, Part::Body, registers);
     let mut found = [V::zero(); 3];
     for c in 0..3 {
@@ -106,11 +134,16 @@ fn apply_body<V: Vector8 + Scalar>(
     let along = if expressed.in_body { orientation } else { splat(expressed.space) };
     let found = turned(along, found);
     for c in 0..3 {
-        torque[3 * *body + c] += found[c];
+        torque[3 * way.body + c] += found[c];
     }
 }
 
 #[inline(always)]
-fn splat<V: Vector8>(q: Quaternion) -> [V; 4] {
+pub(super) fn loaded<V: Vector8>(q: &[Lanes; 4]) -> [V; 4] {
+    [V::load(q[0]), V::load(q[1]), V::load(q[2]), V::load(q[3])]
+}
+
+#[inline(always)]
+pub(super) fn splat<V: Vector8>(q: Quaternion) -> [V; 4] {
     [V::splat(q[0]), V::splat(q[1]), V::splat(q[2]), V::splat(q[3])]
 }
