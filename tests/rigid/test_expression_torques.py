@@ -261,10 +261,10 @@ def test_a_pulse_is_not_passed_over(how: dict[str, Any], frame: Any, width: floa
     wheel = vv.RigidBody(1.0, [0.5, 0.6, 0.9])
     kick = np.sqrt(np.pi) / 0.9
     out = vv.Scene(wheel, pulse).run(t=1000.0, **how)
-    assert out.angular_velocity[-1, 0, 2] == pytest.approx(kick, rel=1e-6)
+    assert out.angular_velocity[-1, 0, 2] == pytest.approx(kick, rel=1e-6, abs=0.0)
     at = np.array([3.0, 437.0, 800.0, 2000.0])
     copies = vv.Scene(wheel, pulse).ensemble(parameters={pulse: {"at": at}}).run(t=1000.0, **how)
-    assert copies.angular_velocity[:, -1, 0, 2] == pytest.approx(np.where(at < 1000.0, kick, 0.0), rel=1e-6)
+    assert copies.angular_velocity[:, -1, 0, 2] == pytest.approx(np.where(at < 1000.0, kick, 0.0), rel=1e-6, abs=0.0)
     np.testing.assert_array_equal(copies[1].angular_velocity, out.angular_velocity)
 
 
@@ -278,7 +278,7 @@ def test_a_narrow_bump_of_the_orientation_is_not_passed_over(how: dict[str, Any]
     wheel = vv.RigidBody(1.0, [0.5, 0.6, 0.9], orientation=start, angular_velocity=[0.0, 0.0, 2.0])
     out = vv.Scene(wheel, bump).run(t=1.0, **how)
     gained = 0.9 * (out.angular_velocity[-1, 0, 2] ** 2 - 4.0) / 2
-    assert gained == pytest.approx(2 * np.sqrt(np.pi), rel=1e-6)
+    assert gained == pytest.approx(2 * np.sqrt(np.pi), rel=1e-6, abs=0.0)
 
 
 def test_what_is_no_number_ends_a_run() -> None:
