@@ -43,6 +43,7 @@ _HOME = {
     "Error": "errors",
     "ExpressedForce": "forces",
     "ExpressionForce": "expression_force",
+    "ExpressionTorque": "expression_torque",
     "FrozenAttribute": "errors",
     "Gravity": "forces",
     "Hamiltonian": "generalized",
@@ -136,6 +137,7 @@ __all__ = [
     "Error",
     "ExpressedForce",
     "ExpressionForce",
+    "ExpressionTorque",
     "FrozenAttribute",
     "Gravity",
     "Hamiltonian",
@@ -245,6 +247,7 @@ if TYPE_CHECKING:
         WrongArguments,
     )
     from visviva.expression_force import ExpressionForce
+    from visviva.expression_torque import ExpressionTorque
     from visviva.forces import (
         CentralField,
         Coulomb,

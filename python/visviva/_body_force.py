@@ -19,6 +19,7 @@ from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import NoReturn
 
     from _typeshed import DataclassInstance
@@ -58,7 +59,7 @@ class BodyForce:
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
-        refuse_subclass(cls, "a custom torque is a CompiledTorque")
+        refuse_subclass(cls, "a custom torque is an ExpressionTorque, or a CompiledTorque")
 
     if not TYPE_CHECKING:  # to which there is no sum of them
 
@@ -75,6 +76,14 @@ class BodyForce:
 
     def _with(self, **changes: Any) -> Self:
         return type(self)(**(self._values() | changes))
+
+    def _differing(self) -> dict[str, Any]:
+        """What may differ from copy to copy of an ensemble, by name."""
+        return {name: getattr(self, name) for name in self._dimensions}
+
+    def _of_copy(self, own: Mapping[str, Any]) -> Self:
+        """The force with values that a copy has of its own."""
+        return self._with(**own)
 
     def _core_arguments(self) -> dict[str, Any]:
         """What the core takes: the kind and every value by name, vectors as arrays of shape (3,).

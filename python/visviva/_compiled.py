@@ -69,6 +69,11 @@ def compiled(fun: Any, args: object) -> Compiled | None:
     return None
 
 
+def is_compiled(function: object) -> bool:
+    """Whether it is a compiled function of whatever signature, and no address of one."""
+    return isinstance(function, _FUNCTION) or hasattr(function, "native_name")
+
+
 def function_of_distance(function: Any) -> Callable[[float], float] | None:
     """Give the compiled function ``double f(double r)`` that this is, or None for a function of Python.
 
@@ -96,7 +101,8 @@ def torque_address(function: Any) -> int:
     expected = "void f(double t, const double *orientation, const double *angular_velocity, double *torque)"
     address = _address(function, "void(double,double*,double*,double*)", expected)
     if address is None:
-        advice = "; compile it with numba.cfunc, or wrap it in a ctypes.CFUNCTYPE" if callable(function) else ""
+        cure = "; compile it with numba.cfunc, or wrap it in a ctypes.CFUNCTYPE; of a formula take vv.ExpressionTorque"
+        advice = cure if callable(function) else ""
         raise InvalidInput("function", f"expected a compiled {expected}, got {type(function).__name__}{advice}")
     return address
 

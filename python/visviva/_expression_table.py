@@ -24,6 +24,7 @@ __all__ = [
     "formulas",
     "looks_at_time",
     "looks_at_velocities",
+    "most_parameters",
     "parameter_names",
     "parameter_values",
     "table",
@@ -54,6 +55,11 @@ def parameter_names(numbers: Iterable[float]) -> tuple[str, ...]:
     return tuple("".join(map(chr, letters)) for operation, _, letters in _rows(numbers) if operation == _NAME)
 
 
+def most_parameters(numbers: Sequence[float]) -> int:
+    """Give a number of parameters that a table has no more of, whether it is one or not."""
+    return numbers.count(_NAME)
+
+
 def parameter_values(numbers: Iterable[float], values: Sequence[float]) -> dict[str, float]:
     """Give the values of the parameters by name; a table that was written by hand may do without names."""
     names = parameter_names(numbers)
@@ -66,9 +72,9 @@ def looks_at_time(numbers: Iterable[float]) -> bool:
     return any(_OPERATIONS[operation] == "time" for operation, _ in _needed(numbers))
 
 
-def looks_at_velocities(numbers: Iterable[float]) -> bool:
-    """Whether anything in a table of a force depends on a velocity, the last three of its six variables."""
-    return any(_OPERATIONS[operation] == "variable" and value >= 3 for operation, value in _needed(numbers))
+def looks_at_velocities(numbers: Iterable[float], first: int = 3) -> bool:
+    """Whether anything in a table depends on a velocity: its last three variables, of a force from the fourth on."""
+    return any(_OPERATIONS[operation] == "variable" and value >= first for operation, value in _needed(numbers))
 
 
 def _needed(numbers: Iterable[float]) -> Iterator[tuple[int, float]]:

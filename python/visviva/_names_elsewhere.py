@@ -94,7 +94,7 @@ ANSWERS: dict[tuple[str, ...], str] = {
         "the force is visviva.DrivenForce(amplitude=…, frequency=…, phase=…)"
     ),
     ("Torque", "ExternalTorque", "Motor", "Actuator"): (
-        "it is visviva.AppliedTorque(torque=…, body=…, frame=…); of a function, visviva.CompiledTorque(function=…)"
+        "it is visviva.AppliedTorque(torque=…, body=…, frame=…); of a formula, visviva.ExpressionTorque(function=…)"
     ),
     # Bodies that turn, and what holds them.
     ("Joint", "Joints", "Hinge", "Constraint", "Constraints", "Weld", "RigidRod", "Rope"): (

@@ -1,8 +1,8 @@
 """Forces on rigid bodies whose numbers differ from copy to copy of an ensemble.
 
 The one idea: as of forces on points (`_own_forces.py`), those of a copy are the scene's with its own values in their
-place, made by their class, which checks them. Only what has a dimension may differ: which bodies are meant, along
-whose axes and by what function is the same in all copies, as lanes of the core share it.
+place, made by their class, which checks them. Only numbers may differ, with a dimension or parameters of a formula:
+which bodies are meant, along whose axes and by what function is the same in all copies, as lanes of the core share it.
 """
 
 from __future__ import annotations
@@ -62,13 +62,14 @@ def refuse_shared(load: BodyForce, named: Mapping[Any, Any]) -> None:
         Naming it.
     """
     known, kind = load._values(), type(load).__name__
-    own = tuple(name for name in load._dimensions if known[name] is not None)
+    differing = load._differing()
+    own = tuple(name for name, value in differing.items() if value is not None)
     has = f"numbers of {kind} ({', '.join(own) or 'which has none that may differ'})"
     for name in named:
         if name in own:
             continue
         why = did_you_mean(str(name), own)
-        if name in load._dimensions:
+        if name in differing:
             why = ": it is None in the scene, and is so in all copies; run a scene for each"
         elif name in known or (name == "address" and "function" in known):
             why = ": bodies, axes and functions are the same in all copies; run a scene for each"
@@ -91,7 +92,7 @@ def load_of_copies(load: BodyForce, values: Mapping[str, Any] | None, count: int
 
 def _with_values(load: BodyForce, own: dict[str, Any], copy: int) -> BodyForce:
     try:
-        return load._with(**own)
+        return load._of_copy(own)
     except InvalidInput as error:
         raise InvalidInput("parameters", f"{type(load).__name__} of copy {copy}: {error}") from error
 
@@ -103,7 +104,7 @@ def described_loads(copies: Sequence[tuple[BodyForce, ...]]) -> tuple[list[dict[
     numbers: dict[int, int] = {}
     # Most copies share theirs, or none does: each is compared once, in what they may differ.
     for which, loads in {id(own): own for own in copies}.items():
-        key = tuple(getattr(load, name) for load in loads for name in load._dimensions)
+        key = tuple(value for load in loads for value in load._differing().values())
         numbers[which] = known.setdefault(key, len(sets))
         if numbers[which] == len(sets):
             sets.append(loads)

@@ -199,7 +199,10 @@ def loads_of_copies_from_file(header: dict[str, Any]) -> tuple[tuple[BodyForce, 
 
 
 def _loads_from_file(descriptions: list[dict[str, Any]]) -> tuple[BodyForce, ...]:
-    kinds: dict[str, Any] = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
+    from visviva.expression_torque import ExpressionTorque
+
+    known = (AppliedTorque, RotationalDrag, AttachedSpring, ExpressionTorque)
+    kinds: dict[str, Any] = {kind.kind: kind for kind in known}
     return tuple(
         kinds[each["kind"]](**{name: value for name, value in each.items() if name != "kind"}) for each in descriptions
     )

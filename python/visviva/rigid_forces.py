@@ -66,8 +66,8 @@ class AppliedTorque(BodyForce):
         if callable(torque):
             raise InvalidInput(
                 "torque",
-                "expected three numbers, got a function; one of the time and the state that is compiled is "
-                "vv.CompiledTorque(function)",
+                "expected three numbers, got a function; a torque of the time and the state is "
+                "vv.ExpressionTorque(function), or vv.CompiledTorque(function) of a compiled one",
             )
         set_frozen(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
         if not isinstance(frame, str) or frame not in ("space", "body"):

@@ -15,6 +15,7 @@ STUB = Path(__file__).parents[2] / "python" / "visviva" / "_core.pyi"
 PLAIN = {
     "acts_between",
     "check_foil",
+    "check_load",
     "check_potential",
     "columns",
     "dimensions",

@@ -94,6 +94,7 @@ WRONG: dict[str, list[Any]] = {
     "count": [0, -1, 1.5, NAN, None, *NO_NUMBER],
     "path": [None, 1.5, ["a"]],
     "name": [1, 2.5, ["a"], "", object()],
+    "values by name": [1.5, "name", [1.0], {}, {"t": 1.0}, {2: 1.0}, object(), None],
     "names": ["ab", ["a"], ["a", "a"], ["a", 1], 3, ["a", ""]],
 }
 
@@ -300,6 +301,19 @@ FORCES: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
     ),
     "RotationalDrag": (vv.RotationalDrag, {"coefficient": (1.0, "not negative"), "body": (0, optional("body"))}),
     "CompiledTorque": (vv.CompiledTorque, {"function": (COMPILED, "function"), "body": (0, optional("body"))}),
+    "ExpressionTorque": (
+        vv.ExpressionTorque,
+        {
+            "function": (lambda t, q, w, k: (0, 0, k * t), "function"),
+            "body": (0, optional("body")),
+            "frame": ("space", "frame"),
+            "parameters": ({"k": 2.0}, "values by name"),
+            "axes": ([0.0, 0.0, 0.0, 1.0], "quaternion"),
+            "length": (1.0, "positive"),
+            "mass": (1.0, "positive"),
+            "time": (1.0, "positive"),
+        },
+    ),
     "AttachedSpring": (
         vv.AttachedSpring,
         {

@@ -13,7 +13,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._nodes import Expression, Nodes, call_with_expressions, expression_array, recorded
 from visviva.generalized._symbolic import Symbols, rates_of, sympy, time
 
-__all__ = ["Source", "calls", "described", "placed_arguments", "refuse_other_arguments"]
+__all__ = ["Source", "calls", "described", "placed_arguments", "refuse_missing_values", "refuse_other_arguments"]
 
 #: What the second half of a state is.
 _SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
@@ -219,7 +219,7 @@ def refuse_other_arguments(
     InvalidInput
         By the name of the argument.
     """
-    taken, by_place = _arguments(function), placed_arguments(function)
+    by_place = placed_arguments(function)
     placed = [each.name for each in by_place]
     if placed[:1] == ["t"] and "t" not in placed[1:]:
         raise InvalidInput(
@@ -242,8 +242,20 @@ def refuse_other_arguments(
                 f"expected the time in the third place, f(position, {second_name}, t), got {each} there; if it is the "
                 f"time call it t, if not write f(position, {second_name}, t, {each})",
             )
+    refuse_missing_values(argument, function, parameters)
+
+
+def refuse_missing_values(argument: str, function: Callable[..., Any], parameters: tuple[str, ...]) -> None:
+    """Refuse a function that takes more than three numbers and what no parameter is given for.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the first.
+    """
+    placed = [each.name for each in placed_arguments(function)]
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
-    needed = [each.name for each in taken if each.default is Parameter.empty and each.kind in named]
+    needed = [each.name for each in _arguments(function) if each.default is Parameter.empty and each.kind in named]
     for name in needed:
         if name not in placed[:3] and name not in parameters:
             raise InvalidInput(

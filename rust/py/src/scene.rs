@@ -6,7 +6,7 @@
 pub(crate) mod events;
 mod input;
 mod output;
-mod rigid;
+pub(crate) mod rigid;
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;

@@ -11,6 +11,7 @@ use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::rigid::motion::bodies::RigidBodies;
 use visviva_core::rigid::motion::conserved::Scenery;
+use visviva_core::rigid::motion::formula::Formula;
 use visviva_core::rigid::motion::loads::{End, Load, OwnLoads, TorqueFunction};
 
 /// The rigid bodies of each copy, the last of its bodies.
@@ -107,6 +108,15 @@ fn loads(described_loads: &Bound<'_, PyList>) -> PyResult<Vec<Load>> {
     described_loads.iter().map(|load| described(load.cast::<PyDict>()?)).collect()
 }
 
+/// Refuses what the core makes no load of.
+///
+/// # Errors
+/// By name.
+#[pyfunction]
+pub(crate) fn check_load(description: &Bound<'_, PyDict>) -> PyResult<()> {
+    described(description).map(drop)
+}
+
 /// A load by its kind and values.
 fn described(load: &Bound<'_, PyDict>) -> PyResult<Load> {
     let py = load.py();
@@ -126,6 +136,19 @@ fn described(load: &Bound<'_, PyDict>) -> PyResult<Load> {
             body: body("body")?,
             function: called(value("address")?.extract::<usize>()?),
         }),
+        "expression_torque" => {
+            let parameters = value("parameters")?.extract::<Vec<(String, f64)>>()?;
+            let parameters: Vec<f64> = parameters.into_iter().map(|(_, value)| value).collect();
+            let nodes = copied("function", &value("function")?.extract()?, [None])?.0;
+            let units = [number("length")?, number("mass")?, number("time")?];
+            let formula = Formula::read(&nodes, parameters.len(), value("axes")?.extract()?, units);
+            Ok(Load::Formula {
+                body: body("body")?,
+                formula: Arc::new(formula.map_err(|error| raised(py, error))?),
+                parameters,
+                in_body: value("frame")?.extract::<String>()? == "body",
+            })
+        }
         "attached_spring" => {
             let own = End::Body(value("body")?.extract()?, point("point")?.unwrap_or_default());
             let other = match (body("to")?, body("particle")?, point("anchor")?) {

@@ -6,6 +6,8 @@
 //! V = −G m M/r − G m/(2 r³) (tr I − 3 n·I n), for each body with each mass beside it.
 
 mod apply;
+mod expressed;
+pub(super) mod unseen;
 mod written;
 
 use super::bodies::{Arrangement, LaneBody, RigidBodies, Start};
@@ -18,6 +20,7 @@ use crate::numerics::real::Real;
 use crate::rigid::quaternion::{IDENTITY, conjugate, rotated};
 use crate::units::Units;
 use apply::Apply;
+use expressed::Expressed;
 
 /// An end of a spring.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +63,7 @@ enum Acting {
 pub struct Loads {
     acting: Vec<Acting>,
     functions: Vec<Function>,
+    formulas: Vec<Expressed>,
 }
 
 /// A torque that the caller computes of a body, in each of so many lanes.
@@ -111,7 +115,7 @@ pub struct Systems<'a> {
 impl Loads {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.acting.is_empty() && self.functions.is_empty()
+        self.acting.is_empty() && self.are_written()
     }
 
     /// What they come to on the only body, if all are torques along its axes.
@@ -121,7 +125,7 @@ impl Loads {
             let Acting::InBody(_, torque) = acting else { return None };
             (0..3).for_each(|c| sum[c] += torque[c]);
         }
-        self.functions.is_empty().then_some(sum)
+        self.are_written().then_some(sum)
     }
 
     /// Adds those on the systems of one row of lanes.
@@ -173,6 +177,11 @@ impl Loads {
                         }),
                         t0: systems.t0,
                     }),
+                    Load::Formula { formula, in_body, .. } => {
+                        self.formulas.push(Expressed::new((formula, *in_body), (systems, place), |of| {
+                            of_system(of, index)
+                        }))
+                    }
                     Load::Spring { ends, .. } => {
                         // Once, by its first end that is a body of these.
                         let first = ends.iter().find_map(|end| match end {
@@ -245,12 +254,15 @@ impl Loads {
 
     /// Adds accelerations of centers and of points, and torques about centers, at a time since the start in the units of
     /// the integration.
-    pub fn apply(&self, time: &Lanes, seen: &Seen<'_>, a: &mut [Lanes], torque: &mut [Lanes]) {
+    pub fn apply(&mut self, time: &Lanes, seen: &Seen<'_>, a: &mut [Lanes], torque: &mut [Lanes]) {
         if !self.acting.is_empty() {
             Lanes::pass(Apply { loads: &self.acting, seen, a, torque: &mut *torque });
         }
         for function in &self.functions {
             function.apply(time, seen, torque);
+        }
+        for formula in &mut self.formulas {
+            formula.apply(time, seen, torque);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What pulls at points of rigid bodies and what turns them, as a scene describes it.
 
+use super::formula::Formula;
 use crate::error::{Error, Result};
 use crate::words::{number, numbers};
 use core::fmt::{Debug, Formatter};
@@ -57,6 +58,17 @@ pub enum Load {
         /// What computes it.
         function: TorqueFunction,
     },
+    /// A torque as a formula, in space or along the caller's axes in the body.
+    Formula {
+        /// Which body.
+        body: Option<usize>,
+        /// Its expressions.
+        formula: Arc<Formula>,
+        /// The values of their parameters.
+        parameters: Vec<f64>,
+        /// Whether it turns with the body.
+        in_body: bool,
+    },
 }
 
 impl End {
@@ -105,6 +117,7 @@ impl Load {
             Self::Drag { .. } => "RotationalDrag",
             Self::Spring { .. } => "AttachedSpring",
             Self::Function { .. } => "CompiledTorque",
+            Self::Formula { .. } => "ExpressionTorque",
         }
     }
 
@@ -115,12 +128,18 @@ impl Load {
             Self::Drag { coefficient, .. } => *coefficient != 0.0,
             Self::Spring { damping, .. } => *damping != 0.0,
             Self::Function { .. } => true,
+            Self::Formula { formula, .. } => formula.looks_at_velocity,
         }
     }
 
-    /// Whether motions under it can be expanded in series: nobody knows what a function of the caller does.
+    /// Whether motions under it can be expanded in series: what a caller's function or formula does is not written in them.
     pub const fn has_series(&self) -> bool {
-        !matches!(self, Self::Function { .. })
+        !matches!(self, Self::Function { .. } | Self::Formula { .. })
+    }
+
+    /// Whether it is a formula, which may change with the time as fast as it likes.
+    pub const fn is_formula(&self) -> bool {
+        matches!(self, Self::Formula { .. })
     }
 
     /// The bodies of a scene of so many, `rigid` of them, that it makes depend on each other.
@@ -155,9 +174,10 @@ impl Load {
     pub fn acts_on(&self, rigid: usize) -> bool {
         let at = |end: &End| matches!(end, End::Body(body, _) if *body == rigid);
         match self {
-            Self::Torque { body, .. } | Self::Drag { body, .. } | Self::Function { body, .. } => {
-                body.is_none_or(|body| body == rigid)
-            }
+            Self::Torque { body, .. }
+            | Self::Drag { body, .. }
+            | Self::Function { body, .. }
+            | Self::Formula { body, .. } => body.is_none_or(|body| body == rigid),
             Self::Spring { ends, .. } => ends.iter().any(at),
         }
     }
@@ -195,6 +215,10 @@ impl Load {
                 body.map_or(Ok(()), exists)
             }
             Self::Function { body, .. } => body.map_or(Ok(()), exists),
+            Self::Formula { body, parameters, .. } => {
+                finite("parameters", parameters)?;
+                body.map_or(Ok(()), exists)
+            }
             Self::Spring { ends, stiffness, length, damping } => {
                 positive("stiffness", *stiffness)?;
                 positive("length", *length)?;

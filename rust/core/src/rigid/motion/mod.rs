@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod conserved;
 pub mod controlled;
 pub mod flows;
+pub mod formula;
 pub mod loads;
 pub mod methods;
 pub mod runge_kutta;

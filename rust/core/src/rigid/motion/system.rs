@@ -5,6 +5,7 @@
 //! at a point put where their orientations have them.
 
 use super::acting::Loads;
+use super::acting::unseen::Unseen;
 use super::bodies::{Arrangement, LaneBody};
 use super::flows::{hold, settle_held, twist};
 use super::series::{Expand, InLanes, expanding};
@@ -30,6 +31,8 @@ pub struct BodySystem {
     series: Option<Box<dyn Expand>>,
     /// Whether something may be unseen by the points.
     looks: bool,
+    /// Formulas of torques in which something may be unseen.
+    unseen: Vec<Unseen>,
 }
 
 impl BodySystem {
@@ -39,8 +42,9 @@ impl BodySystem {
         (arrangement, loads): (Arrangement, Loads),
         state: &State<Lanes>,
     ) -> Self {
+        let unseen = loads.watched(&arrangement.bodies);
         let pulls = Pulls::new(arrangement, loads, 0.0);
-        Self { points, pulls, at: state.clone(), series: None, looks: false }
+        Self { points, pulls, at: state.clone(), series: None, looks: false, unseen }
     }
 
     /// Whose points may pass over something unseen, or not.
@@ -102,10 +106,17 @@ impl System<Lanes> for BodySystem {
     }
 
     fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
-        if !self.looks {
-            return Ok(None);
+        let Self { points, pulls, looks, unseen, .. } = self;
+        let mut until = None;
+        if *looks {
+            until = step.ask_first_of_halves(pulls.arrangement.points(), &mut **points)?;
         }
-        step.ask_first_of_halves(self.pulls.arrangement.points(), &mut *self.points)
+        for formula in unseen {
+            if let Some(seen) = formula.seen_until(step, &pulls.arrangement)? {
+                until = Some(until.map_or(seen, |until: Lanes| until.min(seen)));
+            }
+        }
+        Ok(until)
     }
 
     fn settle(&self, state: &mut State<Lanes>) {

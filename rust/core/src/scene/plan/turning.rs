@@ -171,6 +171,7 @@ pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<
     let in_parts = request.events.is_empty()
         && !steered
         && !velocities
+        && !bodies.loads.iter().any(Load::is_formula)
         && !bodies.moments.iter().any(|&[a, b, c]| a != b && b != c && c != a)
         && !points_apart(scene, bodies, &forces);
     let (method, dt) = match request.dt {

@@ -92,9 +92,9 @@ fn stretched(
 }
 
 impl Loads {
-    /// Whether all of them can be written: functions of the caller cannot.
+    /// Whether all of them can be written: functions of the caller cannot, and formulas are not.
     pub(in crate::rigid::motion) fn are_written(&self) -> bool {
-        self.functions.is_empty()
+        self.functions.is_empty() && self.formulas.is_empty()
     }
 
     /// Adds what acts on bodies, but for functions of the caller.
