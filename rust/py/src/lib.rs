@@ -96,6 +96,8 @@ mod _core {
         monte_carlo, monte_carlo_expected, scattering_events, strata_edges, strata_weights,
     };
     #[pymodule_export]
+    use crate::scene::rigid::check_load;
+    #[pymodule_export]
     use crate::scene::{
         Planned, acceleration, columns, conserved, conserves, differences, neighbors, plan, run,
     };
