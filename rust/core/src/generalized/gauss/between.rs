@@ -48,8 +48,7 @@ impl Between {
 
 /// Whether rates that miss the polynomial by so much show that its last terms, which are so large, are none of a smooth motion.
 pub(super) fn shows(missed: f64, last: f64) -> bool {
-    // What is no number is none of one.
-    !(missed < SHOWN * last)
+    missed >= SHOWN * last
 }
 
 #[cfg(test)]

@@ -144,7 +144,7 @@ fn errors_body<V: Vector8>(
     weights: &[Lanes; WIDTH],
     stages: usize,
     columns: &Columns,
-    missed: Option<&[Lanes]>,
+    missed: Option<(&[Lanes], f64)>,
     h: Lanes,
 ) -> Lanes {
     let limit = Lanes(core::array::from_fn(|lane| columns.limit(lane)));
@@ -164,7 +164,10 @@ fn errors_body<V: Vector8>(
         let error = V::select(V::zero().less(last), error, V::zero());
         let part = error * V::load(h).abs() * V::load(scale).min(V::load(limit));
         let part = match missed {
-            Some(missed) => V::select(V::load(missed[i]).less(V::splat(SHOWN) * last), V::zero(), part),
+            Some((missed, of_noise)) => {
+                let missed = V::load(missed[i]) - V::splat(of_noise) * V::load(noise);
+                V::select(missed.less(V::splat(SHOWN) * last), V::zero(), part)
+            }
             None => part,
         };
         most = V::select(most.less(part), part, most);
@@ -178,6 +181,6 @@ tiered! {
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
     pub(super) fn missed[][](weights: (&[Lanes; WIDTH], f64), stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
-    pub(super) fn errors[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, missed: Option<&[Lanes]>, h: Lanes) -> Lanes = errors_body;
+    pub(super) fn errors[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, missed: Option<(&[Lanes], f64)>, h: Lanes) -> Lanes = errors_body;
     pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
 }

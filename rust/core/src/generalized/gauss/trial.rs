@@ -227,11 +227,12 @@ impl Trial<f64> for GaussStep {
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
         self.pace.error = if self.pace.may_err(self.steps) { self.error(h, false) } else { 0.0 };
         if self.pace.errs(self.steps) {
-            if !is_known {
-                self.look_for_noise(t, state);
-            }
             self.look_between((t, h), state);
             self.pace.error = self.error(h, true);
+            if !is_known && self.pace.errs(self.steps) {
+                self.look_for_noise(t, state);
+                self.pace.error = self.error(h, true);
+            }
         }
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });

@@ -66,9 +66,11 @@ impl GaussEight {
         self.take_errors(h, asked, None);
         let again = self.lanes(|_, pace| pace.errs(self.steps)).and(running);
         if again.any() {
-            self.look_for_noise(t, state, again.and(known.not()));
             let missed = self.missed_between((t, h), state, again);
             self.take_errors(h, again, Some(&missed));
+            let noisy = self.lanes(|_, pace| pace.errs(self.steps)).and(again).and(known.not());
+            self.look_for_noise(t, state, noisy);
+            self.take_errors(h, noisy, Some(&missed));
         }
     }
 
@@ -110,15 +112,13 @@ impl GaussEight {
         for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
             taken[lane] += 1;
         }
-        for (missed, &noise) in missed.iter_mut().zip(&columns.noise) {
-            *missed = *missed - Lanes::splat(beyond.ending.noise) * noise;
-        }
         missed
     }
 
     fn take_errors(&mut self, h: Lanes, asked: Bits, missed_between: Option<&[Lanes]>) {
         let Some(rows) = self.beyond.coefficients.as_ref().filter(|_| asked.any()) else { return };
-        let found = errors(rows, self.table.stages, &self.columns, missed_between, h);
+        let missed = missed_between.map(|missed| (missed, self.beyond.ending.noise));
+        let found = errors(rows, self.table.stages, &self.columns, missed, h);
         for (lane, pace) in self.paces.iter_mut().enumerate().filter(|(lane, _)| asked.lane(*lane)) {
             pace.error = found.0[lane];
         }

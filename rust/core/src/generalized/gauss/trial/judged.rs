@@ -143,7 +143,7 @@ impl GaussStep {
         led(&between.rates, &stages.rates, there);
         for (i, missed) in missed_between.iter_mut().enumerate() {
             let away = machine.output(i) - there[i];
-            *missed = largest(away.map(f64::abs)) - beyond.ending.noise * stages.noise[i];
+            *missed = largest(away.map(f64::abs));
         }
     }
 
@@ -158,7 +158,8 @@ impl GaussStep {
         for (i, coefficients) in coefficients.iter().enumerate() {
             let (error, last) = error_of_mean(coefficients.0, stages.noise[i]);
             let part = error * h.abs() * Real::min(stages.scales[i], limit);
-            if part > most && (!is_looked_at || shows(missed_between[i], last)) {
+            let missed = missed_between[i] - beyond.ending.noise * stages.noise[i];
+            if part > most && (!is_looked_at || shows(missed, last)) {
                 most = part;
             }
         }
