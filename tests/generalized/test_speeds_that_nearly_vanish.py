@@ -56,7 +56,7 @@ def test_a_wedge_with_a_rounded_corner(width: float) -> None:
         vx**2 / 2 - sp.sqrt(x**2 + width**2), [x], velocities=[vx], position=[1.0], velocity=[0.0]
     ).ensemble(position=starts)
     out, wanted = wedge.run(50.0), wedge.run(50.0, method="taylor", rtol=1e-14)
-    # Thirty turns, each of which may err by ten tolerances; before, energies were off by up to 2e-8, and places by 2e-7.
+    # Thirty turns, each of which may err by ten tolerances; before, energies were off by 2e-8, and places by 2e-7.
     assert np.abs(out.energy[:, -1] / out.energy[:, 0] - 1.0).max() < 1e-10
     assert np.abs(out.position[:, -1] - wanted.position[:, -1]).max() < 1e-9
 
