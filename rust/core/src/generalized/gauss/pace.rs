@@ -136,7 +136,8 @@ impl Pace {
 
     /// Whether it is to be asked what the polynomial of a step tells: if it leads to other rates at the end.
     pub(super) fn may_err(&self, steps: Steps) -> bool {
-        matches!(steps, Steps::Chosen { tolerance, .. } if self.missed > ERRING * tolerance)
+        let misses = matches!(steps, Steps::Chosen { tolerance, .. } if self.missed > ERRING * tolerance);
+        misses && self.missable(steps)
     }
 
     /// Whether the step errs by what is not allowed.
