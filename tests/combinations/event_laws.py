@@ -94,15 +94,15 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
         function, near = told["expression"], EPSILON * (_size(x) + moved)
         value = float(function(scene.t0, x, v))
         boost = EPSILON * (_size(v) + span * _size(scene.acceleration()))
-        changes = 0.0
+        changes, digits_off = 0.0, [k * EPSILON for k in (-3, -2, -1, 1, 2, 3)]
         for array, digits in ((x, near), (v, boost)):
             for at in np.ndindex(array.shape):
                 by_number = []
-                for nudge in (2.0**-20, EPSILON):
+                for nudge in (2.0**-20, *digits_off):
                     beside = array.copy()
                     beside[at] += nudge * (digits / EPSILON)
                     state = (beside, v) if array is x else (x, beside)
-                    by_number.append(abs(float(function(scene.t0, *state)) - value) / nudge * EPSILON)
+                    by_number.append(abs((float(function(scene.t0, *state)) - value) / nudge) * EPSILON)
                 changes += max(by_number)
         return value, 64 * (changes + EPSILON)
     if event.kind == "plane":
