@@ -22,6 +22,7 @@ __all__ = [
     "checked_parameters",
     "distance_table",
     "formulas",
+    "has_corners",
     "looks_at_time",
     "looks_at_velocities",
     "most_parameters",
@@ -75,6 +76,22 @@ def looks_at_time(numbers: Iterable[float]) -> bool:
 def looks_at_velocities(numbers: Iterable[float], first: int = 3) -> bool:
     """Whether anything in a table depends on a velocity: its last three variables, of a force from the fourth on."""
     return any(_OPERATIONS[operation] == "variable" and value >= first for operation, value in _needed(numbers))
+
+
+def has_corners(numbers: Iterable[float]) -> bool:
+    """Whether a table has absolute values, which it has as roots of squares: there derivatives jump."""
+    nodes = [row for row in _rows(numbers) if row[0] != _NAME]
+
+    def is_square(operation: int, value: float, arguments: Sequence[int]) -> bool:
+        if _OPERATIONS[operation] == "product":
+            return len(arguments) == 2 and arguments[0] == arguments[1]
+        if _OPERATIONS[operation] != "power":
+            return False
+        exponent = nodes[int(arguments[1])][1] if len(arguments) > 1 else value
+        return exponent == 2.0
+
+    roots = (arguments[0] for operation, _, arguments in nodes if _OPERATIONS[operation] == "sqrt")
+    return any(is_square(*nodes[int(root)]) for root in roots)
 
 
 def _needed(numbers: Iterable[float]) -> Iterator[tuple[int, float]]:

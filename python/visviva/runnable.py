@@ -286,7 +286,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
         """Derivatives of the state at a time with respect to the state at the start: the state transition matrix.
 
         A small difference of each number of the start goes by the linear equations of the motion beside it. All forces
-        do, and all methods but ``taylor`` and those of Boris. Derivatives of forces are right to 11 digits and more.
+        do, and all methods but ``taylor`` and those of Boris. Derivatives of forces are right to 11 digits and more, of
+        which a motion loses what neighbors become larger in between than at the end, as at a narrow pericenter: one
+        more difference, of all numbers together, tells it.
 
         Units: those of the scene, a row those of a number of the state over those of each.
 
@@ -310,14 +312,15 @@ class Runnable(Shown, ABC, Generic[_Result]):
             As `run`; rigid bodies; bodies that have merged; a motion so far from the origin that rounding hides
             neighbors.
         visviva.ConvergenceError
-            Of a scene: the motion, or its neighbor, ended early.
+            Of a scene: the motion, or its neighbor, ended early, or derivatives are lost by more than a hundredth of
+            what they add up to; a copy of an ensemble is NaN then.
         visviva.Interrupted
             Ctrl-C.
 
         Warns
         -----
         visviva.AccuracyWarning
-            As `run`.
+            As `run`, and for derivatives that are off by more than 1e-6 of what they add up to.
 
         References
         ----------

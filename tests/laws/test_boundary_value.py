@@ -86,3 +86,5 @@ def test_what_is_refused() -> None:
         scene.boundary_value(1.0, [1.0, 1.0, 0.0], body=3)
     with pytest.raises(vv.InvalidInput, match="rigid bodies"):
         vv.Scene(vv.RigidBody(mass=1.0, moments=[1.0, 2.0, 2.5])).boundary_value(1.0, [1.0, 1.0, 0.0])
+    with pytest.raises(vv.InvalidInput, match="each body once"):
+        scene.boundary_value(1.0, [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0]], body=[0, 0])

@@ -4,6 +4,7 @@ Bounds: derivatives of forces are differences of evaluations, right to 1e-11; mo
 neighbors.
 """
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,35 @@ def test_many_bodies_and_massless_ones() -> None:
     np.testing.assert_allclose(moved, np.vstack([shift, np.zeros((36, 3))]), rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.parametrize("eccentricity", [0.97, 0.99, 0.999, 0.9999])
+def test_what_a_narrow_pericenter_takes_is_told(eccentricity: float) -> None:
+    # Neighbors become a million times as large there as at the end, so rounding of derivatives (1e-11) is not.
+    far, slow = 1.0 + eccentricity, np.sqrt((1.0 - eccentricity) / (1.0 + eccentricity))
+    scene = vv.Scene(
+        vv.Particles([1.0, 0.0], [[0.0, 0.0, 0.0], [far, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, slow, 0.0]]),
+        vv.Gravity(G=1.0),
+    )
+    line = vv.Lagrangian(
+        (vx**2 + vy**2) / 2 + 1 / sp.sqrt(x**2 + y**2),
+        [x, y],
+        velocities=[vx, vy],
+        position=[far, 0.0],
+        velocity=[0.0, slow],
+    )
+    end = 1.8 * np.pi
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        if eccentricity > 0.995:
+            with pytest.raises(vv.ConvergenceError, match="derivatives of the motion are off by"):
+                scene.flow_jacobian(end)
+            return
+        flow = scene.flow_jacobian(end)[np.ix_([3, 4, 9, 10], [3, 4, 9, 10])]
+    expected = line.flow_jacobian(end, rtol=1e-13)
+    off = np.abs(flow - expected).max() / np.abs(expected).max()
+    # What is told is of the size of what is off, and nothing is said of a part in a million.
+    assert off < (1e-3 if told else 1e-5), off
+
+
 @pytest.mark.parametrize("length", [2.0**-300, 2.0**200])
 def test_units_are_no_matter(length: float) -> None:
     p = THREE.particles
@@ -181,3 +211,18 @@ def test_what_is_refused() -> None:
     fall = vv.Scene(vv.Particles([1.0, 1.0], [[-1.0, 0, 0], [1.0, 0, 0]], np.zeros((2, 3))), vv.Gravity(G=1.0))
     with pytest.raises(vv.Error):
         fall.flow_jacobian(100.0)
+    valley = vv.ExpressionForce(potential=lambda r, v, t: abs(r[0]))
+    with pytest.raises(vv.InvalidInput, match="absolute values"):
+        vv.Scene(ONE, valley).flow_jacobian(1.0)
+
+
+def test_a_narrow_bump_that_a_run_sees_is_seen() -> None:
+    # A pulse of the stiffness, one in all: x is thrown back by as much as it is off, whatever its width.
+    for width in (1e-2, 1e-4):
+        pulse = vv.ExpressionForce(
+            force=lambda r, v, t, w=width: (-r[0] + r[0] * np.exp(-(((t - 1.0) / w) ** 2)) / w, 0 * r[0], 0 * r[0])
+        )
+        scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]]), pulse)
+        # The motion is linear in where it begins.
+        expected = scene.run(2.0, rtol=1e-12).position[-1, 0, 0]
+        assert scene.flow_jacobian(2.0)[0, 0] == pytest.approx(expected, rel=1e-6, abs=0.0)

@@ -111,7 +111,9 @@ impl<'a, S: Element> Taken<'a, S> {
     /// As [`System::seen_until`].
     pub fn ask_first_of_halves(&self, numbers: usize, system: &mut dyn System<S>) -> Result<Option<S>> {
         let ends = self.ends.map(|state| first_of_halves(state, numbers));
-        let accelerations = |rates: &[S]| rates[rates.len() / 2..][..numbers].to_vec();
+        // Of the second order accelerations are all that is told.
+        let first = |rates: &[S]| if rates.len() == self.ends[0].len() { rates.len() / 2 } else { 0 };
+        let accelerations = |rates: &[S]| rates[first(rates)..][..numbers].to_vec();
         let rates = self.rates.map(|rates| rates.map(accelerations));
         let visited = |lane: usize| -> Visited {
             let whole = self.visited.map(|visited| visited(lane)).unwrap_or_default();

@@ -234,7 +234,7 @@ impl Trial<Lanes> for GaussEight {
         });
         let mut is_known = known;
         if noisy.any() {
-            self.look_for_noise(t, state, noisy);
+            self.look_for_noise((t, false), state, noisy);
             let smoothness = self.smoothness(h, running);
             for lane in (0..WIDTH).filter(|&lane| noisy.lane(lane)) {
                 self.paces[lane].takes_beside_noise(smoothness.0[lane]);
@@ -257,7 +257,7 @@ impl Trial<Lanes> for GaussEight {
         for (pace, missed) in self.paces.iter_mut().zip(missed.0) {
             pace.missed = missed;
         }
-        self.ask_for_errors((t, h), state, (running, is_known));
+        self.ask_for_errors((t, h), state, running);
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let pace = &mut self.paces[lane];
             if pace.refuses(self.steps, &self.beyond.ending) {

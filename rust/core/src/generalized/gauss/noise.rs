@@ -51,13 +51,14 @@ fn noise_of(samples: &[f64; WIDTH]) -> f64 {
     if noise < f64::INFINITY { noise } else { 0.0 }
 }
 
-/// The noise of each rate of one trajectory.
-pub(super) fn of_one(machine: &mut Machine<Lanes>, t: f64, y: &[f64], noise: &mut [f64]) {
+/// The noise of each rate of one trajectory; also by what the rounding of the time makes of them, if that is asked.
+pub(super) fn of_one(machine: &mut Machine<Lanes>, (t, timed): (f64, bool), y: &[f64], noise: &mut [f64]) {
     for (index, (register, &y)) in machine.state().iter_mut().zip(y).enumerate() {
         *register = Lanes(core::array::from_fn(|sample| off(y, index, sample)));
     }
     // Times that are too far apart are told of as such.
-    machine.run(Lanes([t; WIDTH]));
+    let time = |sample| if timed { off(t, y.len(), sample) } else { t };
+    machine.run(Lanes(core::array::from_fn(time)));
     for (index, noise) in noise.iter_mut().enumerate() {
         *noise = noise_of(&machine.output(index).0);
     }
@@ -66,7 +67,7 @@ pub(super) fn of_one(machine: &mut Machine<Lanes>, t: f64, y: &[f64], noise: &mu
 /// The same of the trajectories in these lanes.
 pub(super) fn of_eight(
     machine: &mut Blocks<AT_ONCE>,
-    t: Lanes,
+    (t, timed): (Lanes, bool),
     y: &[Lanes],
     lanes: Bits,
     noise: &mut [Lanes],
@@ -75,7 +76,7 @@ pub(super) fn of_eight(
     for first in (0..WIDTH).step_by(AT_ONCE) {
         machine.run_apart(|register, block| {
             let sample = |number: &Lanes| Lanes(number.0.map(|number| off(number, register, first + block)));
-            y.get(register).map_or(t, sample)
+            y.get(register).map_or_else(|| if timed { sample(&t) } else { t }, sample)
         });
         for (index, samples) in samples.iter_mut().enumerate() {
             for block in 0..AT_ONCE {
@@ -101,7 +102,7 @@ pub(super) fn found_beside_noise(work: &mut Work<'_>, known: bool) -> (Iterated,
         return (begun, known);
     }
     let Work { machine, state, stages, t, .. } = &mut *work;
-    of_one(machine, *t, state.all().0, &mut stages.noise);
+    of_one(machine, (*t, false), state.all().0, &mut stages.noise);
     stages.rates.copy_from_slice(&stages.guess);
     let beside = found(work);
     (Iterated { evaluations: begun.evaluations + 1 + beside.evaluations, ..beside }, true)

@@ -122,7 +122,7 @@ impl GaussStep {
     fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> (Iterated, bool) {
         let noisy = self.pace.noisy;
         if noisy {
-            self.look_for_noise(t, state);
+            self.look_for_noise((t, false), state);
         } else {
             self.stages.noise.fill(0.0);
         }
@@ -140,8 +140,8 @@ impl GaussStep {
         (iterated, known)
     }
 
-    /// Measures the noise of rates.
-    fn look_for_noise(&mut self, t: f64, state: &State<f64>) {
+    /// Measures the noise of rates, by the rounding of the time as well or not.
+    fn look_for_noise(&mut self, t: (f64, bool), state: &State<f64>) {
         noise::of_one(&mut self.machine, t, state.all().0, &mut self.stages.noise);
         self.evaluations += 1;
     }
@@ -216,7 +216,7 @@ impl Trial<f64> for GaussStep {
         self.pace.delta = if iterated.converged { self.smoothness(h) } else { f64::INFINITY };
         let mut is_known = known;
         if !known && self.pace.may_be_noise(self.steps, || self.most_noise(state, h)) {
-            self.look_for_noise(t, state);
+            self.look_for_noise((t, false), state);
             self.pace.takes_beside_noise(self.smoothness(h));
             is_known = self.pace.noisy;
         }
@@ -229,8 +229,8 @@ impl Trial<f64> for GaussStep {
         if self.pace.errs(self.steps) {
             self.look_between((t, h), state);
             self.pace.error = self.error(h, true);
-            if !is_known && self.pace.errs(self.steps) {
-                self.look_for_noise(t, state);
+            if self.pace.errs(self.steps) {
+                self.look_for_noise((t, true), state);
                 self.pace.error = self.error(h, true);
             }
         }

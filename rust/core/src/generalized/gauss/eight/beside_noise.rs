@@ -20,7 +20,7 @@ pub(super) fn found_beside_noise(work: &mut Work<'_>, known: Bits) -> (Settled, 
         return (all, known);
     }
     let Work { machine, state, columns, t, .. } = &mut *work;
-    noise::of_eight(machine, *t, state.all().0, held_up, &mut columns.noise);
+    noise::of_eight(machine, (*t, false), state.all().0, held_up, &mut columns.noise);
     for (rates, guess) in columns.rates.iter_mut().zip(&columns.guess) {
         for (rates, &guess) in rates.iter_mut().zip(guess) {
             *rates = Lanes::select(held_up, guess, *rates);
@@ -47,7 +47,7 @@ impl GaussEight {
     ) -> (Settled, Bits) {
         let noisy = self.lanes(|_, pace| pace.noisy).and(running);
         self.columns.noise.fill(Lanes::zero());
-        self.look_for_noise(t, state, noisy);
+        self.look_for_noise((t, false), state, noisy);
         let fading =
             Lanes(core::array::from_fn(|lane| self.paces[lane].fading(self.length.0[lane], h.0[lane])));
         let Self { table, form, velocity, machine, columns, next, .. } = self;
@@ -61,8 +61,8 @@ impl GaussEight {
         (iterated, known)
     }
 
-    /// Measures the noise of rates in these lanes.
-    pub(super) fn look_for_noise(&mut self, t: Lanes, state: &State<Lanes>, lanes: Bits) {
+    /// Measures the noise of rates in these lanes, by the rounding of times as well or not.
+    pub(super) fn look_for_noise(&mut self, t: (Lanes, bool), state: &State<Lanes>, lanes: Bits) {
         if !lanes.any() {
             return;
         }

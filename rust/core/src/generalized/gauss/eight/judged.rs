@@ -55,12 +55,7 @@ impl GaussEight {
     }
 
     /// Tells the paces by how much steps err, as their polynomials tell, as parts of sizes.
-    pub(super) fn ask_for_errors(
-        &mut self,
-        (t, h): (Lanes, Lanes),
-        state: &State<Lanes>,
-        (running, known): (Bits, Bits),
-    ) {
+    pub(super) fn ask_for_errors(&mut self, (t, h): (Lanes, Lanes), state: &State<Lanes>, running: Bits) {
         self.paces.iter_mut().for_each(|pace| pace.error = 0.0);
         let asked = self.lanes(|_, pace| pace.may_err(self.steps)).and(running);
         self.take_errors(h, asked, None);
@@ -68,8 +63,8 @@ impl GaussEight {
         if again.any() {
             let missed = self.missed_between((t, h), state, again);
             self.take_errors(h, again, Some(&missed));
-            let noisy = self.lanes(|_, pace| pace.errs(self.steps)).and(again).and(known.not());
-            self.look_for_noise(t, state, noisy);
+            let noisy = self.lanes(|_, pace| pace.errs(self.steps)).and(again);
+            self.look_for_noise((t, true), state, noisy);
             self.take_errors(h, noisy, Some(&missed));
         }
     }

@@ -9,7 +9,7 @@ use crate::forces::{Dynamics, ForceTerm};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::{Mask, Real};
-use crate::ode::system::{Form, Needs, System};
+use crate::ode::system::{Form, Needs, System, Taken};
 use crate::parallel::Ticker;
 use crate::scene::layout::Layout;
 use crate::scene::plan::Plan;
@@ -228,6 +228,11 @@ impl System<Lanes> for Variation {
             step = Lanes::select(different, shortened, step);
         }
         Ok(())
+    }
+
+    fn seen_until(&mut self, step: &Taken<'_, Lanes>) -> Result<Option<Lanes>> {
+        let from = step.from + Lanes::splat(self.begun);
+        Taken { from, ..*step }.ask_first_of_halves(self.half(), &mut self.dynamics)
     }
 
     fn longest_step(&self, (q, v): (&[Lanes], &[Lanes]), a: &[Lanes]) -> Option<Lanes> {
