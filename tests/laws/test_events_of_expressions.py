@@ -301,15 +301,3 @@ def test_a_thin_function_ends_a_run() -> None:
     assert out.status == vv.Status.STOPPED
     # Half of the top is √ln 2 widths after it.
     assert out.final.particles.position[0, 0] - 0.3 == pytest.approx(1e-4 * np.sqrt(np.log(2.0)), rel=0.0, abs=1e-13)
-
-
-def test_equal_steps_miss_no_thin_bump() -> None:
-    """On ellipses, beside a step in which the body goes many widths: up to half of the zeros were left out."""
-    pair = vv.problems.kepler(e=0.5).scene
-    copies = pair.ensemble(velocity=pair.particles.velocity * np.linspace(0.9, 1.1, 13)[:, None, None])
-    event = vv.events.expression(lambda t, r, v: np.exp(-(((r[1, 0] - r[0, 0] - 0.3) / 0.01) ** 2)) - 0.5)
-    told = copies.run(t=11.0, method="verner98", events=[event])
-    found = copies.run(t=11.0, method="leapfrog", dt=0.05, events=[event])
-    assert [len(one.events) for one in found] == [len(one.events) for one in told]
-    alone = copies[6].run(t=11.0, method="leapfrog", dt=0.05, events=[event]).events
-    np.testing.assert_array_equal(found[6].events.t, alone.t)
