@@ -5,7 +5,6 @@
 //! Nothing here knows mechanics: a program is a function of a state, the time and parameters.
 
 pub mod assembler;
-pub mod bounds;
 pub mod code;
 pub mod curve;
 mod derivative;

@@ -90,18 +90,26 @@ impl Shape {
             let beyond = BEYOND * (high - low);
             Interval::between(low - beyond, high + beyond)
         }));
-        self.told_here()
+        self.told_here(|told| told != Told::Narrow)
     }
 
-    /// What is told here, and of a wider region if nothing hides there.
-    fn told_here(&mut self) -> Told {
+    /// Whether the function is nowhere zero between two times, while the state is in a box.
+    pub fn is_clear(&mut self, time: Interval, state: impl Iterator<Item = Interval>) -> bool {
+        self.here.time = time;
+        self.here.state.clear();
+        self.here.state.extend(state);
+        self.told_here(|told| told == Told::Clear) == Told::Clear
+    }
+
+    /// What is told here, and of a wider region if that is enough there.
+    fn told_here(&mut self, is_enough: fn(Told) -> bool) -> Told {
         if self.known.holds(&self.here) {
             return self.told;
         }
         if self.wait == 0 {
             let wider = self.here.wider(WIDER);
             let told = told(&mut self.intervals, &wider, &self.parameters);
-            if told != Told::Narrow {
+            if is_enough(told) {
                 (self.known, self.told) = (wider, told);
                 return told;
             }

@@ -6,7 +6,6 @@
 //! Directions are those of increasing time, also in a run backwards: a pericenter stays one.
 
 mod expression;
-pub(in crate::scene) mod reach;
 mod sight;
 
 pub use expression::{Expression, Working};

@@ -212,23 +212,7 @@ fn product<V: Real>(a: V, b: V) -> (V, V) {
 }
 
 /// The nested terms `f` of `y(θ) = y + θ(f0 + (1-θ)(f1 + θ(f2 + …)))` from the coefficients of θ, θ², …, in place.
-pub(in crate::ode) fn nest<S: Element>(coefficients: &mut [S]) {
-    S::pass(Nest(coefficients));
-}
-
-struct Nest<'a, S>(&'a mut [S]);
-
-impl<S: Element> Pass<S> for Nest<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: View<S>>(self) {
-        nested(V::view_mut(self.0));
-    }
-}
-
-#[inline(always)]
-fn nested<S: Real>(coefficients: &mut [S]) {
+pub(in crate::ode) fn nest<S: Real>(coefficients: &mut [S]) {
     for start in (0..coefficients.len()).step_by(2) {
         // At θ = 1 it is the sum, and the other factor's coefficients are sums of those after; at θ = 0 it is the first.
         let rest = &mut coefficients[start..];

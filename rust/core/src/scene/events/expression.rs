@@ -1,16 +1,16 @@
 //! Expressions among events: functions of the time and of coordinates and velocities of bodies, compiled.
 //!
 //! The one idea: what a user writes is a graph of the coordinates that it looks at, so its rate along the motion is derived, and
-//! what it does in a step follows from bounds of its value and of that, or from its rates where it is no more than a parabola
-//! of the coordinates.
+//! what it does in a step follows from bounds of those coordinates, or from its rates where it is no more than a parabola of
+//! them.
 
-use super::reach::Reach;
 use super::{Moving, Surroundings, View};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
-use crate::expressions::bounds::Bounds;
 use crate::expressions::graph::{Graph, Id, Node, number};
+use crate::expressions::intervals::Intervals;
 use crate::expressions::program::Output;
+use crate::expressions::shape::Shape;
 use crate::expressions::table::{self, Parameters, Variables};
 use crate::expressions::{Code, Machine};
 use crate::numerics::real::Real;
@@ -41,8 +41,8 @@ pub(crate) struct Formula {
     pub(crate) looks_at_time: bool,
     /// Whether it is the same about any origin, however that moves.
     pub(crate) is_relative: bool,
-    /// Bounds of both, unless the cubic through its values and rates at the ends of a step tells it.
-    pub(crate) bounds: Option<Arc<Bounds>>,
+    /// Its bounds, unless the cubic through its values and rates at the ends of a step tells it.
+    pub(crate) bounds: Option<Arc<Intervals>>,
 }
 
 impl Expression {
@@ -70,6 +70,9 @@ impl Expression {
         let coordinates: Vec<(usize, usize)> = of_bodies.collect();
         let (mut graph, roots) =
             table::read(nodes, 1, Variables { count: 2 * n, unit: 1.0 }, Parameters::Told(&[]))?;
+        let bounds = degree(&graph, roots[0])
+            .is_none_or(|degree| degree > SQUARE)
+            .then(|| Arc::new(Intervals::new(graph.clone(), roots.clone())));
         let looks_at_velocities =
             graph.any(&roots, |node| matches!(node, Node::Variable(index) if *index as usize >= n));
         let looks_at_time = graph.any(&roots, |node| matches!(node, Node::Time));
@@ -80,11 +83,7 @@ impl Expression {
             let _ = motion.insert(graph.variable(index), graph.variable(index + n as u32));
         }
         let rate = graph.tangent(&roots, &motion);
-        let both = [roots[0], rate[0]];
-        let bounds = degree(&graph, roots[0])
-            .is_none_or(|degree| degree > SQUARE)
-            .then(|| Arc::new(Bounds::new(&graph, &both, 3 * n)));
-        let outputs = both.map(Output::Node);
+        let outputs: Vec<Output> = roots.iter().chain(&rate).copied().map(Output::Node).collect();
         let code = Arc::new(compile(&graph, (3 * n, 0), &[], &outputs)?);
         let formula = Formula { code, coordinates, looks_at_velocities, looks_at_time, is_relative, bounds };
         Ok(Self { bodies, formula: Arc::new(formula) })
@@ -101,9 +100,9 @@ impl Expression {
         !self.formula.is_relative
     }
 
-    /// Whether it is told of units side by side at once: these have times of their own.
+    /// Whether it is told from the ends of a step, and of units side by side at once: these have times of their own.
     pub(crate) fn is_told_abreast(&self) -> bool {
-        !self.formula.looks_at_time
+        self.formula.bounds.is_none() && !self.formula.looks_at_time
     }
 
     /// Its value, of all bodies of a scene.
@@ -197,8 +196,8 @@ pub struct Working {
     pub(crate) ends: [Vec<f64>; 2],
     /// Its rates there, if they tell what it does between.
     pub(crate) rates: Option<[f64; 2]>,
-    /// Its bounds, if there are any, and the numbers that these work with.
-    pub(crate) reach: Option<(Reach, Vec<f64>)>,
+    /// Its bounds, if there are any.
+    pub(crate) shape: Option<Shape>,
 }
 
 impl Working {
@@ -206,11 +205,8 @@ impl Working {
     pub(crate) fn new(expression: &Expression) -> Self {
         let formula = expression.formula.clone();
         let ends = [0, 1].map(|_| vec![0.0; 3 * formula.coordinates.len()]);
-        let reach = Reach::of(&formula).map(|reach| {
-            let numbers = reach.numbers();
-            (reach, numbers)
-        });
-        Self { machine: Machine::new(formula.code.clone(), &[]), formula, ends, rates: None, reach }
+        let shape = formula.bounds.as_ref().map(|bounds| Shape::new(bounds, &[]));
+        Self { machine: Machine::new(formula.code.clone(), &[]), formula, ends, rates: None, shape }
     }
 
     /// Takes the coordinates of bodies in these places, about an origin, for those at an end of a step.

@@ -1,13 +1,13 @@
 //! Expressions among events: in which steps they may be zero.
 //!
-//! The one idea: bounds over where the bodies may be in a step tell an expression, or the cubic through its own values and rates
-//! where it is no more than a parabola of them.
+//! The one idea: coordinates lie between the coefficients of the cubics through both ends of a step, or not far beyond; bounds
+//! over that box tell an expression, or the cubic through its own values and rates where it is no more than a parabola.
 
 use super::super::super::events::Working;
-use super::super::super::events::reach::Told;
 use super::super::super::unit::Prepared;
-use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
+use super::clear::{CLEARANCE, cubic, keeps_clear, keeps_clear_after_all};
 use super::{Span, Watch};
+use crate::expressions::intervals::Interval;
 use crate::numerics::power_of_two::scale;
 use crate::scene::frame::Moved;
 
@@ -30,22 +30,16 @@ impl Watch<'_> {
         }
         let times = times.map(|elapsed| self.job.scene.t0 + elapsed);
         working.rates = None;
-        let Working { ends: [before, after], reach, .. } = &mut *working;
-        let is_bounded = reach.is_some();
-        if let Some((reach, numbers)) = reach {
-            reach.come(numbers, (times, [before, after]), h);
-            if !reach.may_be_zero(numbers, true) || !reach.may_still(numbers, true, values, h) {
-                return Some(true);
-            }
-            if reach.told(numbers, values, h) != Told::Crosses {
-                return Some(false);
-            }
+        let Working { ends: [before, after], shape, .. } = &mut *working;
+        if let Some(shape) = shape {
+            let states = between(before, after, h);
+            return Some(shape.is_clear(Interval::between(times[0], times[1]), states));
         }
         working.accelerate(h);
         let rates = [0, 1].map(|end| working.run(end, times[end])[1]);
         working.rates = Some(rates);
         let cubic = cubic(values, rates, h);
-        Some(!is_bounded && (keeps_clear(cubic) || keeps_clear_after_all(cubic)))
+        Some(keeps_clear(cubic) || keeps_clear_after_all(cubic))
     }
 }
 
@@ -57,4 +51,36 @@ impl Watch<'_> {
             None => self.event(event).0.rates([&self.sights[event], &self.next[event]], h),
         }
     }
+}
+
+/// Where the coordinates and velocities of an expression are in a step `h`, from what they are at both ends.
+pub(super) fn between<'a>(
+    before: &'a [f64],
+    after: &'a [f64],
+    h: f64,
+) -> impl Iterator<Item = Interval> + 'a {
+    let n = before.len() / 3;
+    (0..2 * n).map(move |index| {
+        let (at, velocity) = (index % n, n + index % n);
+        let (x, v) = ([before[at], after[at]], [before[velocity], after[velocity]]);
+        if index < n { place_between(x, v, h) } else { velocity_between(x, v, h) }
+    })
+}
+
+/// Where a coordinate is in a step: between the coefficients of the cubic, or beyond by what a motion may leave it.
+fn place_between(x: [f64; 2], v: [f64; 2], h: f64) -> Interval {
+    around(&cubic(x, v, h))
+}
+
+/// The same of its velocity.
+fn velocity_between([x0, x1]: [f64; 2], [v0, v1]: [f64; 2], h: f64) -> Interval {
+    around(&[v0, 3.0 * (x1 - x0) / h - v0 - v1, v1])
+}
+
+fn around(coefficients: &[f64]) -> Interval {
+    let (low, high) = coefficients
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let beyond = CLEARANCE * (high - low);
+    Interval::between(low - beyond, high + beyond)
 }

@@ -1,9 +1,7 @@
 //! Expressions among events in lanes: of eight units side by side, or along eight steps of one.
 //!
-//! The one idea: values and rates at both ends of a step come from one program, and their bounds from another, whatever lies in
-//! the lanes.
+//! The one idea: values and rates at both ends of a step come from one program, whatever lies in the lanes.
 
-use super::super::super::events::reach::Reach;
 use super::super::super::events::{Event, Expression, Formula, Moving, What, accelerations};
 use super::Bodies;
 use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
@@ -17,8 +15,8 @@ use crate::scene::frame::{Moved, restored};
 use crate::tiered;
 use std::sync::Arc;
 
-/// What an event is of its bodies, if it is an expression that is told in lanes.
-fn told_in_lanes(event: &Event) -> Option<&Arc<Formula>> {
+/// What an event is of its bodies, if it is an expression that is told from the ends of a step.
+fn told_by_ends(event: &Event) -> Option<&Arc<Formula>> {
     let What::Expression(expression) = &event.what else { return None };
     let Expression { formula, .. } = expression;
     expression.is_told_abreast().then_some(formula)
@@ -32,13 +30,12 @@ pub(super) struct ExpressionAbreast {
     looks_at_velocities: bool,
     /// Coordinates, velocities and accelerations at the last node, and at this one.
     ends: [Vec<Lanes>; 2],
-    reach: Option<(Reach, Vec<Lanes>)>,
 }
 
 impl ExpressionAbreast {
-    /// Of an event whose bodies lie in these places, if it is an expression that is told in lanes.
+    /// Of an event whose bodies lie in these places, if it is an expression that is told from the ends of a step.
     pub(super) fn of(event: &Event, places: &[usize], bodies: &Bodies) -> Option<Self> {
-        let formula = told_in_lanes(event)?;
+        let formula = told_by_ends(event)?;
         let coordinates = formula.coordinates.iter().enumerate().filter(|(_, of)| of.1 < bodies.components);
         let row = |(index, &(body, c)): (usize, &(usize, usize))| {
             (index, bodies.row(places[body]) + c * (bodies.stride / WIDTH))
@@ -48,7 +45,6 @@ impl ExpressionAbreast {
             rows: coordinates.map(row).collect(),
             looks_at_velocities: formula.looks_at_velocities,
             ends: [0, 1].map(|_| vec![Lanes::zero(); 3 * formula.coordinates.len()]),
-            reach: reach(formula),
         })
     }
 
@@ -70,7 +66,7 @@ fn eight_units<V: Vector8 + Scalar>(
     bodies: &Bodies,
     state: &State<Lanes>,
 ) -> Bits {
-    let ExpressionAbreast { machine, rows, looks_at_velocities, ends: [before, after], reach } = abreast;
+    let ExpressionAbreast { machine, rows, looks_at_velocities, ends: [before, after] } = abreast;
     let h = V::load(*h);
     let n = before.len() / 3;
     let [length, speed] = [V::splat(bodies.factors[0]), V::splat(bodies.factors[1])];
@@ -85,43 +81,12 @@ fn eight_units<V: Vector8 + Scalar>(
         }
         (after[index], after[n + index]) = (x.store(), velocity.store());
     }
-    let near = match reach {
-        Some(reach) => bounded::<V>(machine, reach, lanes, [before, after], h),
-        None => {
-            let [start, end] = [run::<V>(machine, before), run::<V>(machine, after)];
-            keeps_clear(cubic([start[0], end[0]], [start[1], end[1]], h)).not()
-        }
-    };
+    let start = run::<V>(machine, before);
+    let end = run::<V>(machine, after);
     for (before, after) in before.iter_mut().zip(&*after) {
         *before = V::select(lanes, V::load(*after), V::load(*before)).store();
     }
-    near
-}
-
-/// The bounds of an expression, if there are any, and the numbers that these work with.
-fn reach(formula: &Formula) -> Option<(Reach, Vec<Lanes>)> {
-    let reach = Reach::of(formula)?;
-    let numbers = reach.numbers();
-    Some((reach, numbers))
-}
-
-/// The lanes of these in whose step an expression that has bounds may be zero.
-#[inline(always)]
-fn bounded<V: Vector8 + Scalar>(
-    machine: &mut Machine<Lanes>,
-    (reach, numbers): &mut (Reach, Vec<Lanes>),
-    lanes: Bits,
-    [before, after]: [&[Lanes]; 2],
-    h: V,
-) -> Bits {
-    let numbers = V::view_mut(numbers);
-    reach.come(numbers, ([V::zero(); 2], [V::view(before), V::view(after)]), h);
-    let near = reach.may_be_zero(numbers, lanes);
-    if !near.any() {
-        return near;
-    }
-    let [start, end] = [run::<V>(machine, before), run::<V>(machine, after)];
-    reach.may_still(numbers, near, [start[0], end[0]], h)
+    keeps_clear(cubic([start[0], end[0]], [start[1], end[1]], h)).not()
 }
 
 /// Value and rate.
@@ -148,17 +113,15 @@ pub(super) struct ExpressionAlong {
     nodes: Vec<[f64; WIDTH + 1]>,
     /// The same, and accelerations, at both ends of each step.
     ends: [Vec<Lanes>; 2],
-    reach: Option<(Reach, Vec<Lanes>)>,
 }
 
 impl ExpressionAlong {
-    /// Of an event of these bodies, if it is an expression that is told in lanes.
+    /// Of an event of these bodies, if it is an expression that is told from the ends of a step.
     pub(super) fn of(event: &Event, bodies: &[usize]) -> Option<Self> {
-        let formula = told_in_lanes(event)?.clone();
+        let formula = told_by_ends(event)?.clone();
         let n = formula.coordinates.len();
         Some(Self {
             machine: Machine::new(formula.code.clone(), &[]),
-            reach: reach(&formula),
             formula,
             bodies: bodies.to_vec(),
             here: vec![Moving::default(); bodies.len()],
@@ -185,11 +148,7 @@ impl ExpressionAlong {
     /// Those of so many steps `h` in which it may be zero.
     pub(super) fn suspects(&mut self, steps: usize, h: f64) -> Bits {
         let mut cubics = [Lanes::zero(); 4];
-        let taken = Bits(((1_u16 << steps) - 1) as u8);
-        let near = near(self, taken, h, &mut cubics);
-        if self.reach.is_some() {
-            return near;
-        }
+        let near = near(self, h, &mut cubics);
         let mut suspects = Bits(0);
         for step in (0..steps).filter(|&step| near.lane(step)) {
             if !keeps_clear_after_all(cubics.map(|lanes| lanes.0[step])) {
@@ -201,17 +160,12 @@ impl ExpressionAlong {
 }
 
 tiered! {
-    fn near[][](along: &mut ExpressionAlong, taken: Bits, h: f64, cubics: &mut [Lanes; 4]) -> Bits = eight_steps;
+    fn near[][](along: &mut ExpressionAlong, h: f64, cubics: &mut [Lanes; 4]) -> Bits = eight_steps;
 }
 
 #[inline(always)]
-fn eight_steps<V: Vector8 + Scalar>(
-    along: &mut ExpressionAlong,
-    taken: Bits,
-    h: f64,
-    cubics: &mut [Lanes; 4],
-) -> Bits {
-    let ExpressionAlong { formula, machine, nodes, ends: [before, after], reach, .. } = along;
+fn eight_steps<V: Vector8 + Scalar>(along: &mut ExpressionAlong, h: f64, cubics: &mut [Lanes; 4]) -> Bits {
+    let ExpressionAlong { formula, machine, nodes, ends: [before, after], .. } = along;
     let (n, h) = (formula.coordinates.len(), V::splat(h));
     for (index, numbers) in nodes.iter().enumerate() {
         before[index] = eight::<V>(numbers, 0).store();
@@ -224,9 +178,6 @@ fn eight_steps<V: Vector8 + Scalar>(
             let at_ends = accelerations(x, v, h);
             (before[2 * n + index], after[2 * n + index]) = (at_ends[0].store(), at_ends[1].store());
         }
-    }
-    if let Some(reach) = reach {
-        return bounded::<V>(machine, reach, taken, [before, after], h);
     }
     let [start, end] = [run::<V>(machine, before), run::<V>(machine, after)];
     let coefficients = cubic([start[0], end[0]], [start[1], end[1]], h);

@@ -1,12 +1,13 @@
 //! Where in a step an expression may be zero.
 //!
-//! The one idea: parts of a step over which bounds keep it from zero, or from turning, are done with; the others are halved, the
-//! longest first, as often as the share of the run that the step is allows, and what is left at last is sampled at its ends. What
-//! is thin or fast in a long step is seen so, and a step in which nothing may be zero costs nothing more.
+//! The one idea: parts of a step over which bounds keep it from zero are done with; the others are halved, the longest first, as
+//! often as the share of the run that the step is allows, and what is left at last is sampled at its ends. What is thin or fast in
+//! a long step is seen so, and a step in which nothing may be zero costs nothing more.
 
-use super::super::super::events::reach::Told;
+use super::expressions::between;
 use super::search::Search;
 use crate::error::Result;
+use crate::expressions::intervals::Interval;
 use crate::numerics::power_of_two::scale;
 use crate::parallel::Ticker;
 use crate::scene::frame::Moved;
@@ -18,21 +19,14 @@ const OF_A_STEP: f64 = 24.0;
 /// A part of the run that is halved no more.
 const SHORTEST: f64 = 1.0 / 1_048_576.0;
 
-/// A place in a step.
-#[derive(Clone)]
-struct Place {
-    /// At which fraction of it.
-    theta: f64,
-    /// What an expression looks at there.
-    state: Vec<f64>,
-    value: f64,
-}
+/// A place in a step: at which fraction of it, and what an expression looks at there.
+type Place = (f64, Vec<f64>);
 
 impl Search<'_, '_> {
     /// Places between which the event may be zero in the step, if it is an expression that has bounds; none of another kind.
     pub(super) fn may_be_zero_between(&mut self, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
         let working = self.watch.working.get(self.event).and_then(Option::as_ref);
-        if working.is_none_or(|working| working.borrow().reach.is_none()) {
+        if working.is_none_or(|working| working.borrow().shape.is_none()) {
             return Ok(Vec::new());
         }
         let (job, length) = (self.watch.job, self.length().abs());
@@ -45,16 +39,15 @@ impl Search<'_, '_> {
             let mut halves = Vec::new();
             for (from, to) in pending {
                 ticker.tick()?;
-                let told = self.told_between(&from, &to);
-                if told == Told::Clear {
+                if self.is_clear_between(&from, &to) {
                     continue;
                 }
-                if told == Told::Crosses || left == 0 || to.theta - from.theta <= shortest {
-                    found.extend([from.theta, to.theta]);
+                if left == 0 || to.0 - from.0 <= shortest {
+                    found.extend([from.0, to.0]);
                     continue;
                 }
                 left -= 1;
-                let middle = self.looked_at(0.5 * (from.theta + to.theta));
+                let middle = self.looked_at(0.5 * (from.0 + to.0));
                 halves.extend([(from, middle.clone()), (middle, to)]);
             }
             pending = halves;
@@ -69,25 +62,21 @@ impl Search<'_, '_> {
         let (own, places) = self.watch.event(self.event);
         let elapsed = scale(self.span.at(theta), self.watch.job.plan.units.time);
         let origin = if own.asks_where() { self.unit.origin.at(elapsed) } else { Moved::NOWHERE };
-        let Some(Some(working)) = self.watch.working.get(self.event) else {
-            return Place { theta, state: Vec::new(), value: f64::NAN };
-        };
+        let Some(Some(working)) = self.watch.working.get(self.event) else { return (theta, Vec::new()) };
         let mut working = working.borrow_mut();
         working.take(0, (&self.watch.inside, places), &origin);
-        let value = working.run(0, self.watch.job.scene.t0 + elapsed)[0];
-        Place { theta, state: working.ends[0].clone(), value }
+        (theta, working.ends[0].clone())
     }
 
-    /// What the expression does between two places.
-    fn told_between(&self, from: &Place, to: &Place) -> Told {
+    /// Whether the expression is nowhere zero between two places.
+    fn is_clear_between(&self, from: &Place, to: &Place) -> bool {
         let job = self.watch.job;
         let times =
-            [from, to].map(|place| job.scene.t0 + scale(self.span.at(place.theta), job.plan.units.time));
-        let h = self.length() * (to.theta - from.theta);
-        let Some(Some(working)) = self.watch.working.get(self.event) else { return Told::Clear };
+            [from.0, to.0].map(|theta| job.scene.t0 + scale(self.span.at(theta), job.plan.units.time));
+        let h = self.length() * (to.0 - from.0);
+        let Some(Some(working)) = self.watch.working.get(self.event) else { return true };
         let mut working = working.borrow_mut();
-        let Some((reach, numbers)) = &mut working.reach else { return Told::Clear };
-        reach.come(numbers, (times, [&from.state, &to.state]), h);
-        reach.told(numbers, [from.value, to.value], h)
+        let Some(shape) = &mut working.shape else { return true };
+        shape.is_clear(Interval::between(times[0], times[1]), between(&from.1, &to.1, h))
     }
 }
