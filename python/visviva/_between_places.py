@@ -29,6 +29,8 @@ _LOOKS = 17
 #: The most steps of a run that tries velocities, and the most trials.
 _MOST_STEPS_OF_A_TRIAL = 20_000
 _MOST_TRIALS = 500
+#: How close steps are held, if nobody says.
+_RTOL = 1e-12
 
 
 def boundary_value(scene: Scene, request: BoundaryRequest) -> Scene:
@@ -44,7 +46,9 @@ def boundary_value(scene: Scene, request: BoundaryRequest) -> Scene:
             raise InvalidInput("body", f"expected each body once, got {request.body!r}")
     shape = (3,) if np.ndim(request.position) == 1 and len(bodies) == 1 else (len(bodies), 3)
     goal = float_array("position", request.position, shape).ravel()
-    motions = _Motions(scene, bodies, {"method": request.method, "rtol": request.rtol, "threads": request.threads})
+    rtol = _RTOL if request.rtol is None and request.dt is None else request.rtol
+    how = {"method": request.method, "dt": request.dt, "rtol": rtol, "threads": request.threads}
+    motions = _Motions(scene, bodies, how)
     return motions.scene_with(through(motions, number("t", request.t), goal))
 
 

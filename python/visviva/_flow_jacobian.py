@@ -50,14 +50,15 @@ def flow_jacobian_of(
     """Follow differences of each number of the start, or of some, of a scene or of each copy."""
     from visviva.ensemble import EnsembleScene
 
+    scenes = scene if isinstance(scene, EnsembleScene) else [scene]
+    if any(hosts(each.particles) is not None for each in scenes):
+        message = "expected bodies by themselves: what has merged has no motion of its own; leave it out"
+        raise InvalidInput("scene", message)
     if isinstance(scene, EnsembleScene):
         found, _, off = _followed(scene, request, scene.run, numbers)
         worst = int(np.argmax(off))
         _tell(float(off[worst]), f"in copy {worst}, ")
         return np.where((off > _UNKNOWN).reshape(-1, *[1] * (found.ndim - 1)), np.nan, found)
-    if hosts(scene.particles) is not None:
-        message = "expected bodies by themselves: what has merged has no motion of its own; leave it out"
-        raise InvalidInput("scene", message)
     copy = scene.ensemble(position=scene.particles.position[None])
     found, status, off = _followed(copy, request, scene.run, numbers)
     if status[0] != Status.OK:
@@ -112,9 +113,10 @@ def _followed(
         sizes, status = sizes_of_motions(copies, motion), np.atleast_1d(motion.status)
     scales = _scales(copies, times[-1] - begin if times.size else 0.0)
     units = np.eye(several) if numbers is None else np.eye(several)[numbers]
-    parts = ((units @ scales) * (0.5 + np.arange(columns) * _GOLDEN % 1.0))[None, :]
-    toward = np.vstack([units, parts @ units]).reshape(columns + 1, 2, bodies, 3).swapaxes(1, 2)
-    toward = np.broadcast_to(toward, (len(copies), *toward.shape)).reshape(-1, bodies, 2, 3)
+    parts = (scales @ units.T) * (0.5 + np.arange(columns) * _GOLDEN % 1.0)
+    begun = np.broadcast_to(units, (len(copies), columns, several))
+    toward = np.concatenate([begun, (parts @ units)[:, None]], axis=1)
+    toward = toward.reshape(-1, 2, bodies, 3).swapaxes(1, 2)
     followed = cast("_core._Request", {**asked, "end_only": False, "times": times})
     found, ended = _core.differences(followed, toward, np.repeat(sizes, columns + 1, axis=0), threads=threads)
     # Of each copy a matrix at each time, whose columns are the numbers of the start, places of all bodies first.
@@ -122,8 +124,8 @@ def _followed(
     worst = ended.reshape(len(copies), columns + 1).max(axis=1)
     matrices, together = found[..., :-1], found[..., -1]
     # The place of each body, and its velocity, by itself; what hardly feels any of the numbers is no worse for that.
-    missed = np.abs(matrices @ parts[0] - together)
-    whole = np.maximum(np.abs(matrices) @ np.abs(parts[0]), _HARDLY * scales)
+    missed = np.abs(np.einsum("btij,bj->bti", matrices, parts) - together)
+    whole = np.maximum(np.einsum("btij,bj->bti", np.abs(matrices), parts), _HARDLY * scales[:, None])
     vectors = [each.reshape(*each.shape[:-1], -1, 3).max(axis=-1) for each in (missed, whole)]
     off = np.nan_to_num(vectors[0] / vectors[1]).max(axis=(1, 2), initial=0.0)
     if asked["end_only"]:
@@ -132,11 +134,14 @@ def _followed(
 
 
 def _scales(copies: EnsembleScene, span: float) -> NDArray[np.float64]:
-    """How large each number of a state is: how far bodies are from each other, or go, and how fast they are."""
-    place, velocity = copies.position.reshape(-1, 3), copies.velocity.reshape(-1, 3)
-    fast = float(np.abs(velocity).max(initial=0.0))
-    far = max(float(np.ptp(place, axis=0).max()), fast * abs(span)) or float(np.abs(place).max(initial=0.0)) or 1.0
-    return np.repeat([far, fast or far / (abs(span) or 1.0)], 3 * len(copies.scene.particles))
+    """How large each number of a state is, of each copy: how far bodies are from each other, or go, and how fast."""
+    place, velocity = copies.position, copies.velocity
+    fast = np.abs(velocity).max(axis=(1, 2), initial=0.0)
+    far = np.maximum(np.ptp(place, axis=1).max(axis=1), fast * abs(span))
+    far = np.where(far > 0.0, far, np.abs(place).max(axis=(1, 2), initial=0.0))
+    far = np.where(far > 0.0, far, 1.0)
+    fast = np.where(fast > 0.0, fast, far / (abs(span) or 1.0))
+    return np.repeat(np.stack([far, fast], axis=1), 3 * len(copies.scene.particles), axis=1)
 
 
 def __dir__() -> list[str]:

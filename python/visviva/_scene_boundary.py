@@ -39,8 +39,8 @@ class BetweenPlaces:
             The places of one body or of several.
         body : int, str or sequence of them, optional
             Which bodies have other velocities and arrive there; all if not given.
-        method, rtol, threads : optional
-            As of `run`, and of `flow_jacobian`.
+        method, dt, rtol, threads : optional
+            As of `run`, and of `flow_jacobian`; `rtol` is 1e-12 if neither it nor `dt` is given.
 
         Returns
         -------

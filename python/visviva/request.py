@@ -246,7 +246,8 @@ class BoundaryRequest:
     position: ArrayLike
     body: int | str | Sequence[int | str] | None = field(default=None, kw_only=True)
     method: MethodName | Method = field(default="auto", kw_only=True)
-    rtol: float = field(default=1e-12, kw_only=True)
+    dt: float | None = field(default=None, kw_only=True)
+    rtol: float | None = field(default=None, kw_only=True)
     threads: int | None = field(default=None, kw_only=True)
 
 

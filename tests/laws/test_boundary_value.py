@@ -69,6 +69,14 @@ def test_a_charge_in_a_magnetic_field_backward() -> None:
     np.testing.assert_allclose(found.particles.velocity, scene.particles.velocity, rtol=0.0, atol=1e-10)
 
 
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8"])
+def test_equal_steps_arrive_by_their_own_motion(method: str) -> None:
+    scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]), SUN)
+    found = scene.boundary_value(2.0, [-0.5, 1.0, 0.25], method=method, dt=0.01)
+    arrived = found.run(2.0, method=method, dt=0.01).position[-1, 0]
+    np.testing.assert_allclose(arrived, [-0.5, 1.0, 0.25], rtol=0.0, atol=1e-9)
+
+
 def test_what_has_no_answer_is_told() -> None:
     # After half a period all motions of an oscillator meet opposite to where they began.
     scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.5, 0.0]]), vv.Harmonic(k=1.0))

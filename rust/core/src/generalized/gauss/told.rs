@@ -166,7 +166,7 @@ fn errors_body<V: Vector8>(
         let part = match missed {
             Some((missed, of_noise)) => {
                 let missed = V::load(missed[i]) - V::splat(of_noise) * V::load(noise);
-                V::select(missed.less(V::splat(SHOWN) * last), V::zero(), part)
+                V::select((V::splat(SHOWN) * last).less_equal(missed), part, V::zero())
             }
             None => part,
         };

@@ -7,7 +7,7 @@
 use crate::error::Result;
 use crate::forces::{Dynamics, ForceTerm};
 use crate::numerics::element::{Element, Pass, View};
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Bits, Lanes};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::system::{Form, Needs, System, Taken};
 use crate::parallel::Ticker;
@@ -212,7 +212,9 @@ impl System<Lanes> for Variation {
         let (mut step, least) = ((Lanes::splat(APART) * self.reach(a)).max(far) / length, far / length);
         // A slope of forces that change over the size of a unit.
         let usual = self.root(Lanes::pass(Square { of: a, measure: &Lanes::one() })) * length;
-        for shorter in 0..=SHORTER {
+        // What was tried before, where a shorter length was tried, and where that has told no more: there rounding is seen.
+        let (mut before, mut tried, mut settled) = ((step, Lanes::zero()), Bits(0), Bits(0));
+        for shorter in 0..=SHORTER + 1 {
             self.slope((&t, 1.0), (q, apart), (v, parting), step, change, ticker)?;
             let mut farther = core::mem::take(&mut self.farther);
             self.slope((&t, 2.0), (q, apart), (v, parting), step, &mut farther, ticker)?;
@@ -220,12 +222,17 @@ impl System<Lanes> for Variation {
             self.farther = farther;
             let beside = self.root(of_slopes).max(usual);
             let part = self.root(of_differences) / beside;
-            let different = Lanes::splat(DIFFERENT).less(part).and(least.less(step));
-            if shorter == SHORTER || !different.any() {
+            let worse = tried.and(before.1.less_equal(part));
+            settled = settled.or(worse);
+            let different = Lanes::splat(DIFFERENT).less(part).and(least.less(step)).and(settled.not());
+            let different = if shorter < SHORTER { different } else { Bits(0) };
+            if !worse.or(different).any() {
                 break;
             }
+            let (last, shortened_from) = (Lanes::select(worse, before.0, step), step);
+            (before, tried) = ((shortened_from, part), different);
             let shortened = (step * (Lanes::splat(ALIKE) / part).sqrt()).max(least);
-            step = Lanes::select(different, shortened, step);
+            step = Lanes::select(different, shortened, last);
         }
         Ok(())
     }
