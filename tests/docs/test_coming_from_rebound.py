@@ -41,10 +41,10 @@ def agree(title: str, mine: Any, theirs: Any) -> None:
     assert np.abs(mine - theirs).max() <= DIGITS.get(title, 1e-10) * np.abs(theirs).max()
 
 
-def test_there_are_the_quick_start_and_eleven_examples() -> None:
+def test_there_are_the_quick_start_and_twelve_examples() -> None:
     assert [title for title, _, _ in PAIRS] == list(ANSWERS)
     assert PAIRS[0][0] == "Quick start"
-    assert len(PAIRS) == 12
+    assert len(PAIRS) == 13
 
 
 @pytest.mark.parametrize("title", [title for title, _, _ in PAIRS])
