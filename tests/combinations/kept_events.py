@@ -194,4 +194,43 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             events=(("distance", 83), ("plane", 78), ("distance", 83)),
         ),
     ),
+    # Two that a spring holds merge, and the others, on which nothing acts any more, go on in a closed form.
+    *(
+        (
+            law,
+            Recipe(
+                method="auto",
+                bodies=9,
+                forces=(("Spring", 67),),
+                seed=916,
+                tame=False,
+                planar=True,
+                at_origin=True,
+                members=9,
+                own=("parameters",),
+                steps=2,
+                outputs=5,
+                columns=("position",),
+                collisions="merge",
+            ),
+        )
+        for law in ("events_change_no_bit_of_the_run", "no_step_is_longer_than_max_step")
+    ),
+    # Two zeros of one event in the step that another ends, both told at its end: one is ahead.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="auto",
+            bodies=8,
+            forces=(("PostNewtonian", 63),),
+            seed=65535,
+            at_origin=True,
+            drifting=True,
+            members=5,
+            own=("mass",),
+            steps=1,
+            backward=True,
+            events=(("energy", 41), ("energy", 84), ("energy", 41)),
+        ),
+    ),
 ]

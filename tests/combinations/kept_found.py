@@ -370,28 +370,6 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             drifting=True,
         ),
     ),
-    # Two that a spring holds merge, and the others, on which nothing acts any more, go on in a closed form.
-    *(
-        (
-            law,
-            Recipe(
-                method="auto",
-                bodies=9,
-                forces=(("Spring", 67),),
-                seed=916,
-                tame=False,
-                planar=True,
-                at_origin=True,
-                members=9,
-                own=("parameters",),
-                steps=2,
-                outputs=5,
-                columns=("position",),
-                collisions="merge",
-            ),
-        )
-        for law in ("events_change_no_bit_of_the_run", "no_step_is_longer_than_max_step")
-    ),
     # Two fall into each other by a potential that is attractive beneath, at speeds beyond the table of a drag.
     (
         "declared_invariants_hold",
@@ -408,23 +386,6 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             steps=18,
             decades=9,
             outputs=3,
-        ),
-    ),
-    # Two zeros of one event in the step that another ends, both told at its end: one is ahead.
-    (
-        "a_terminal_event_only_cuts",
-        Recipe(
-            method="auto",
-            bodies=8,
-            forces=(("PostNewtonian", 63),),
-            seed=65535,
-            at_origin=True,
-            drifting=True,
-            members=5,
-            own=("mass",),
-            steps=1,
-            backward=True,
-            events=(("energy", 41), ("energy", 84), ("energy", 41)),
         ),
     ),
 ]

@@ -226,3 +226,16 @@ def test_a_narrow_bump_that_a_run_sees_is_seen() -> None:
         # The motion is linear in where it begins.
         expected = scene.run(2.0, rtol=1e-12).position[-1, 0, 0]
         assert scene.flow_jacobian(2.0)[0, 0] == pytest.approx(expected, rel=1e-6, abs=0.0)
+
+
+def test_a_copy_that_loses_its_derivatives_is_told_and_spoils_no_other() -> None:
+    slow = [np.sqrt(0.5 / 1.5), np.sqrt(1e-4 / 1.9999)]
+    scene = vv.Scene(vv.Particles([1.0, 0.0], [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0]], np.zeros((2, 3))), vv.Gravity(G=1.0))
+    copies = scene.ensemble(
+        position=[[[0.0, 0.0, 0.0], [far, 0.0, 0.0]] for far in (1.5, 1.9999)],
+        velocity=[[[0.0, 0.0, 0.0], [0.0, speed, 0.0]] for speed in slow],
+    )
+    with pytest.warns(vv.AccuracyWarning, match="in copy 1, derivatives of the motion are off by"):
+        flow = copies.flow_jacobian(1.8 * np.pi)
+    assert np.isnan(flow[1]).all()
+    assert np.array_equal(flow[0], copies[0].flow_jacobian(1.8 * np.pi))
