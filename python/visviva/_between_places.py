@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from visviva.errors import AccuracyWarning, CloseEncounter, ConvergenceError, In
 from visviva.request import FlowRequest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from contextlib import AbstractContextManager
 
     from numpy.typing import NDArray
@@ -41,7 +42,9 @@ def boundary_value(scene: Scene, request: BoundaryRequest) -> Scene:
     if request.body is None:
         bodies = np.arange(len(particles))
     else:
-        bodies = np.atleast_1d(body_indices("body", np.atleast_1d(request.body), particles.names, len(particles)))
+        given = request.body
+        several = [given] if isinstance(given, str) or not np.ndim(given) else list(cast("Sequence[int | str]", given))
+        bodies = np.asarray(body_indices("body", several, particles.names, len(particles)))
         if len(np.unique(bodies)) < len(bodies):
             raise InvalidInput("body", f"expected each body once, got {request.body!r}")
     shape = (3,) if np.ndim(request.position) == 1 and len(bodies) == 1 else (len(bodies), 3)

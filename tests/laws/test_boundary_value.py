@@ -92,6 +92,8 @@ def test_what_is_refused() -> None:
         scene.boundary_value(1.0, [1.0, 1.0])
     with pytest.raises(vv.InvalidInput, match="body"):
         scene.boundary_value(1.0, [1.0, 1.0, 0.0], body=3)
+    with pytest.raises(vv.InvalidInput, match="got 'Mars'"):
+        scene.boundary_value(1.0, [1.0, 1.0, 0.0], body="Mars")
     with pytest.raises(vv.InvalidInput, match="rigid bodies"):
         vv.Scene(vv.RigidBody(mass=1.0, moments=[1.0, 2.0, 2.5])).boundary_value(1.0, [1.0, 1.0, 0.0])
     with pytest.raises(vv.InvalidInput, match="each body once"):
