@@ -43,7 +43,7 @@ pub(super) struct Columns {
     /// What a number is measured by, inverted.
     pub(super) scales: Vec<Lanes>,
     /// The same of its changes: noise is no change.
-    measures: Vec<Lanes>,
+    pub(super) measures: Vec<Lanes>,
     /// How noisy rates are, where that was asked for.
     pub(super) noise: Vec<Lanes>,
     /// How large numbers were and how far they went, lately.

@@ -6,12 +6,12 @@
 mod beside_noise;
 mod judged;
 
-use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns_end::advance;
+use super::columns::{AT_ONCE, Columns, NOTHING, Row, Work};
+use super::extension::{self, ExtensionOfEight};
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
 use super::told::{felt, kept, led, led_to};
-use super::trial::{NO_SHADOW, no_convergence};
+use super::trial::{NOTHING_WITHIN, no_convergence};
 use super::{Beyond, Method, Table};
 use crate::error::Result;
 use crate::expressions::Code;
@@ -27,11 +27,11 @@ use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
 use crate::ode::system::{Form, System};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
-use beside_noise::found_beside_noise;
 use std::sync::Arc;
 
 /// A collocation method at work on eight trajectories.
 pub struct GaussEight {
+    method: &'static Method,
     table: &'static Table,
     /// Where a step looks.
     looks: Looks,
@@ -49,8 +49,9 @@ pub struct GaussEight {
     ends: Vec<Lanes>,
     /// Rates at the beginnings of the first ones.
     begin: Vec<Lanes>,
-    /// Those of shadow steps.
-    shadow: Columns,
+    /// What is read within the steps that were tried, and of which lanes that has been found.
+    extension: ExtensionOfEight,
+    extended: Bits,
     /// Rates at the first and at the last stages.
     edges: [Vec<Lanes>; 2],
     next: State<Lanes>,
@@ -76,6 +77,7 @@ impl GaussEight {
     ) -> Self {
         let evaluated = form.evaluated();
         Self {
+            method,
             table: method.table,
             looks: method.table.looks(),
             beyond: method.beyond(),
@@ -88,7 +90,8 @@ impl GaussEight {
             length_tried: Lanes::zero(),
             ends: vec![Lanes::zero(); evaluated],
             begin: vec![Lanes::zero(); evaluated],
-            shadow: Columns::new(evaluated),
+            extension: ExtensionOfEight::new(evaluated),
+            extended: Bits(0),
             edges: [vec![Lanes::zero(); evaluated], vec![Lanes::zero(); evaluated]],
             next: state.clone(),
             steps,
@@ -142,9 +145,26 @@ impl GaussEight {
         }
     }
 
-    fn count(&mut self, iterated: &Iterated, lanes: Bits) {
+    /// Finds what states within the steps of these lanes are read by.
+    fn extend(&mut self, outcome: &Settled<Lanes>, state: &State<Lanes>, lanes: Bits) {
+        if !lanes.any() {
+            return;
+        }
+        let (t, h, fading) = (Lanes::splat(self.t0) + outcome.from, outcome.h, Lanes::one());
+        let Self { table, form, velocity, machine, columns, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running: lanes };
+        let found = extension::find_eight(self.method.extension(), &mut work, &mut self.extension);
+        self.count(&found.evaluations, lanes);
+        self.extended = self.extended.or(found.converged);
+        for lane in (0..WIDTH).filter(|&lane| lanes.and(found.converged.not()).lane(lane)) {
+            self.lost[lane] = Some(NOTHING_WITHIN.to_owned());
+        }
+    }
+
+    fn count(&mut self, evaluations: &[u32; WIDTH], lanes: Bits) {
         for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
-            self.taken[lane] += u64::from(iterated.evaluations[lane]);
+            self.taken[lane] += u64::from(evaluations[lane]);
         }
     }
 }
@@ -218,11 +238,12 @@ impl Trial<Lanes> for GaussEight {
         _: &mut Ticker<'_>,
     ) -> Result<Settled<Lanes>> {
         let h = Lanes::next_step(clock, running);
+        self.extended = Bits(0);
         let planned = clock.h;
         self.guess(h, running);
         let t = Lanes::splat(self.t0) + clock.elapsed;
         let (iterated, known) = self.iterated((t, h), state, running);
-        self.count(&iterated, running);
+        self.count(&iterated.evaluations, running);
         let smoothness = self.smoothness(h, running);
         for (lane, pace) in self.paces.iter_mut().enumerate().filter(|(lane, _)| running.lane(*lane)) {
             pace.converged = iterated.converged.lane(lane);
@@ -310,22 +331,9 @@ impl Trial<Lanes> for GaussEight {
         _: &mut Ticker<'_>,
     ) -> Result<()> {
         let asked = Lanes::zero().less(theta);
-        let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
-        led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.guess);
-        self.shadow.rates.copy_from_slice(&self.shadow.guess);
-        self.shadow.sizes.copy_from_slice(&self.columns.tried);
-        self.shadow.noise.copy_from_slice(&self.columns.noise);
-        let noisy = self.lanes(|_, pace| pace.noisy);
-        let (t, h, fading) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta, Lanes::one());
-        let Self { table, form, velocity, machine, shadow: columns, .. } = self;
-        let (table, form, velocity) = (*table, *form, *velocity);
-        let mut work = Work { table, form, velocity, machine, state, columns, t, h, fading, running: asked };
-        let (iterated, _) = found_beside_noise(&mut work, noisy);
-        advance(&work, into);
-        self.count(&iterated, asked);
-        for lane in (0..WIDTH).filter(|&lane| asked.and(iterated.converged.not()).lane(lane)) {
-            self.lost[lane] = Some(NO_SHADOW.to_owned());
-        }
+        self.extend(outcome, state, asked.and(self.extended.not()));
+        let from = (self.form, state);
+        extension::read_eight(self.method.extension(), &self.extension, from, (theta, outcome.h), into);
         Ok(())
     }
 

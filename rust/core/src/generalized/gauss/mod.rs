@@ -14,6 +14,7 @@ mod columns_end;
 mod decay;
 mod eight;
 mod ending;
+mod extension;
 mod noise;
 mod pace;
 mod rest;
@@ -29,6 +30,7 @@ use crate::ode::looks::Looks;
 use between::Between;
 pub use eight::GaussEight;
 use ending::Ending;
+use extension::Extension;
 pub use pace::Steps;
 use rounding::Rounding;
 use std::sync::OnceLock;
@@ -63,6 +65,7 @@ pub struct Method {
     pub order: u32,
     table: &'static Table,
     beyond: OnceLock<Beyond>,
+    extension: OnceLock<Extension>,
 }
 
 /// What follows from a table alone, found when it is first asked for.
@@ -77,9 +80,27 @@ struct Beyond {
 
 /// The methods of this family.
 pub static METHODS: [Method; 3] = [
-    Method { name: "gauss4", order: 4, table: &tables::GAUSS4, beyond: OnceLock::new() },
-    Method { name: "gauss8", order: 8, table: &tables::GAUSS8, beyond: OnceLock::new() },
-    Method { name: "gauss16", order: 16, table: &tables::GAUSS16, beyond: OnceLock::new() },
+    Method {
+        name: "gauss4",
+        order: 4,
+        table: &tables::GAUSS4,
+        beyond: OnceLock::new(),
+        extension: OnceLock::new(),
+    },
+    Method {
+        name: "gauss8",
+        order: 8,
+        table: &tables::GAUSS8,
+        beyond: OnceLock::new(),
+        extension: OnceLock::new(),
+    },
+    Method {
+        name: "gauss16",
+        order: 16,
+        table: &tables::GAUSS16,
+        beyond: OnceLock::new(),
+        extension: OnceLock::new(),
+    },
 ];
 
 impl Method {
@@ -91,6 +112,11 @@ impl Method {
             rounding: Rounding::of(self.table),
         };
         self.beyond.get_or_init(found)
+    }
+
+    /// What the states within its steps are read by, found when it is first asked for.
+    fn extension(&'static self) -> &'static Extension {
+        self.extension.get_or_init(|| Extension::of(self.table))
     }
 
     /// Steps that are chosen for a relative tolerance, and held or not.

@@ -48,7 +48,7 @@ pub(super) struct Stages {
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
     /// The same of its changes: noise is no change.
-    measures: Vec<f64>,
+    pub(super) measures: Vec<f64>,
     /// How noisy rates are, where that was asked for.
     pub(super) noise: Vec<f64>,
     /// How large numbers were and how far they went, lately.
@@ -289,7 +289,7 @@ pub(super) fn found(work: &mut Work<'_>) -> Iterated {
 
 /// The lanes of so many stages.
 #[inline(always)]
-fn own_lanes(stages: usize) -> Bits {
+pub(super) fn own_lanes(stages: usize) -> Bits {
     Bits(u8::MAX >> (WIDTH - stages))
 }
 

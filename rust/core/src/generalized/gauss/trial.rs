@@ -1,11 +1,12 @@
-//! Gauss's methods as trials of one trajectory: stages begin where the last step leads, and states between nodes are those of
-//! shadow steps, as good as those at nodes.
+//! Gauss's methods as trials of one trajectory: stages begin where the last step leads, and states within a step are those of its
+//! continuous [`extension`](super::extension), as good as those at nodes.
 //!
 //! The one idea: whatever is decided of a step, its [`Pace`] decides, which eight trajectories side by side
 //! ([`eight`](super::eight)) have, too.
 
 mod judged;
 
+use super::extension::{self, ExtensionOfOne};
 use super::noise::{self, found_beside_noise};
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
@@ -22,8 +23,8 @@ use crate::ode::system::{Form, System};
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
-/// What ends a run whose state between nodes is not found.
-pub(super) const NO_SHADOW: &str = "the stages of the state between two steps do not converge";
+/// What ends a run whose states within a step are not found.
+pub(super) const NOTHING_WITHIN: &str = "the rates of the states within a step do not converge";
 
 /// What ends a run with equal steps.
 pub(super) fn no_convergence(h: f64) -> String {
@@ -32,6 +33,7 @@ pub(super) fn no_convergence(h: f64) -> String {
 
 /// A collocation method at work on one trajectory.
 pub struct GaussStep {
+    method: &'static Method,
     table: &'static Table,
     /// Where a step looks.
     looks: Looks,
@@ -51,8 +53,9 @@ pub struct GaussStep {
     missed_between: Vec<f64>,
     /// Rates at the beginning of the first step, if it was chosen here.
     begin: Vec<f64>,
-    /// Those of a shadow step.
-    shadow: Stages,
+    /// What is read within the step that was tried, and whether that has been found.
+    extension: ExtensionOfOne,
+    is_extended: bool,
     /// Rates at the first and at the last stage.
     edges: [Vec<f64>; 2],
     next: State<f64>,
@@ -75,6 +78,7 @@ impl GaussStep {
     ) -> Self {
         let evaluated = form.evaluated();
         Self {
+            method,
             table: method.table,
             looks: method.table.looks(),
             beyond: method.beyond(),
@@ -88,7 +92,8 @@ impl GaussStep {
             length_tried: 0.0,
             missed_between: vec![0.0; evaluated],
             begin: vec![],
-            shadow: Stages::new(evaluated),
+            extension: ExtensionOfOne::new(evaluated),
+            is_extended: false,
             edges: [vec![0.0; evaluated], vec![0.0; evaluated]],
             next: state.clone(),
             steps,
@@ -138,6 +143,22 @@ impl GaussStep {
         self.evaluations += u64::from(iterated.evaluations);
         self.pace.noisy = noisy || (known && iterated.converged);
         (iterated, known)
+    }
+
+    /// Finds what states within the step are read by.
+    fn extend(&mut self, outcome: &Settled<f64>, state: &State<f64>) -> Result<()> {
+        let (t, h) = (self.t0 + outcome.from, outcome.h);
+        let Self { table, form, velocity, machine, stages, .. } = self;
+        let (table, form, velocity) = (*table, *form, *velocity);
+        let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading: 1.0 };
+        let (converged, evaluations) =
+            extension::find(self.method.extension(), &mut work, &mut self.extension);
+        self.evaluations += u64::from(evaluations);
+        self.is_extended = converged;
+        if converged {
+            return Ok(());
+        }
+        Err(Error::Convergence { message: NOTHING_WITHIN.to_owned(), time: t })
     }
 
     /// Measures the noise of rates, by the rounding of the time as well or not.
@@ -208,6 +229,7 @@ impl Trial<f64> for GaussStep {
         _: &mut Ticker<'_>,
     ) -> Result<Settled<f64>> {
         let h = f64::next_step(clock, running);
+        self.is_extended = false;
         let planned = clock.h;
         self.guess(h);
         let t = self.t0 + clock.elapsed;
@@ -271,23 +293,17 @@ impl Trial<f64> for GaussStep {
         into: &mut State<f64>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        let rows = self.table.at(&self.table.c.map(|c| c * theta));
-        led(&rows, &self.stages.rates, &mut self.shadow.guess);
-        self.shadow.rates.copy_from_slice(&self.shadow.guess);
-        // Measured by what the step itself is: no reading knows of another.
-        self.shadow.sizes.copy_from_slice(&self.stages.tried);
-        self.shadow.noise.copy_from_slice(&self.stages.noise);
-        let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
-        let Self { table, form, velocity, machine, shadow: stages, .. } = self;
-        let (table, form, velocity) = (*table, *form, *velocity);
-        let mut work = Work { table, form, velocity, machine, state, stages, t, h, fading: 1.0 };
-        let (iterated, _) = found_beside_noise(&mut work, self.pace.noisy);
-        advance(&work, into);
-        self.evaluations += u64::from(iterated.evaluations);
-        if iterated.converged {
-            return Ok(());
+        if !self.is_extended {
+            self.extend(outcome, state)?;
         }
-        Err(Error::Convergence { message: NO_SHADOW.to_owned(), time: t })
+        extension::read(
+            self.method.extension(),
+            &self.extension,
+            (self.form, state),
+            (theta, outcome.h),
+            into,
+        );
+        Ok(())
     }
 
     fn keep(&mut self, accepted: bool, state: &mut State<f64>) {
