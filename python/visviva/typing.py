@@ -298,7 +298,8 @@ ColumnName: TypeAlias = Literal[
 GeneralizedMethodName: TypeAlias = (
     MethodName
     | DiscreteMethodName
-    | Literal["gauss4", "gauss8", "gauss16", "matrix_exponential", "rattle", "rattle4", "rattle6", "rattle8"]
+    | Literal["gauss4", "gauss8", "gauss16", "matrix_exponential", "elliptic_functions"]
+    | Literal["rattle", "rattle4", "rattle6", "rattle8"]
 )
 """Methods of systems in generalized coordinates; which of them takes a system, its plan says."""
 

@@ -16,16 +16,19 @@ __all__ = [
     "ACROSS_KINKS",
     "CONSTRAINED",
     "DISCRETE",
+    "EXACT",
     "GAUSS",
-    "LINEAR",
     "check_atol",
     "check_rtol",
     "discrete_name",
     "method_name",
 ]
 
-#: What solves linear equations with constant coefficients, without steps.
-LINEAR = "matrix_exponential"
+#: What knows a motion at any time, without steps, what is found of equations that it is for, and what they have to be.
+EXACT = {
+    "matrix_exponential": ("linear", "linear equations with constant coefficients"),
+    "elliptic_functions": ("pendulum", "the equation of a pendulum, θ″ = −a sin θ + b cos θ"),
+}
 
 #: Collocation methods, which take any Lagrangian and any Hamiltonian.
 GAUSS = ("gauss16", "gauss8", "gauss4")
@@ -78,8 +81,8 @@ def _check_max_step(method: str, dt: float | None, max_step: float | None) -> No
     """Refuse a longest step of what chooses none."""
     if max_step is None:
         return
-    if method == LINEAR:
-        raise InvalidInput("max_step", f"{LINEAR} takes no steps; leave max_step out")
+    if method in EXACT:
+        raise InvalidInput("max_step", f"{method} takes no steps; leave max_step out")
     if dt is not None:
         raise InvalidInput("max_step", f"expected none beside dt = {dt:g}, which is the length of every step")
 
@@ -94,8 +97,10 @@ def method_name(method: object, system: States, dt: float | None, max_step: floa
 def _name(method: object, system: States, dt: float | None, max_step: float | None) -> str:
     if isinstance(method, str) and method == "auto":
         found = system._structure
-        if found["linear"] and dt is None and max_step is None:
-            return LINEAR
+        if dt is None and max_step is None:
+            for name, (what, _) in EXACT.items():
+                if found[what]:
+                    return name
         return ACROSS_KINKS if found["kinks"] and dt is None else "gauss16"
     if isinstance(method, str) and method in GAUSS:
         if dt is None and system._structure["kinks"]:
@@ -105,8 +110,8 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
                 f"{ACROSS_KINKS} makes its steps small there, or give a step dt of your own",
             )
         return method
-    if isinstance(method, str) and method == LINEAR:
-        _check_linear(system, dt)
+    if isinstance(method, str) and method in EXACT:
+        _check_exact(method, system, dt)
         return method
     if isinstance(method, str) and method in (*DISCRETE, *CONSTRAINED):
         _check_discrete(method, system, dt)
@@ -120,7 +125,7 @@ def _name(method: object, system: States, dt: float | None, max_step: float | No
     if isinstance(method, str) and method not in known:
         refuse_of_others("method", method, stiff="'gauss16' is implicit")
     if not isinstance(method, str) or method not in known:
-        own = ("auto", *GAUSS, LINEAR, *DISCRETE, *CONSTRAINED)
+        own = ("auto", *GAUSS, *EXACT, *DISCRETE, *CONSTRAINED)
         hint = did_you_mean(method, [*own, *known]) if isinstance(method, str) else ""
         raise InvalidInput(
             "method", f"expected one of {', '.join(own)} or a method of vv.methods(), got {method!r}{hint}"
@@ -159,14 +164,12 @@ def _check_splitting(method: str, system: States) -> None:
         raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
 
 
-def _check_linear(system: States, dt: float | None) -> None:
-    if not system._structure["linear"]:
-        raise InvalidInput(
-            "method",
-            f"{LINEAR} needs linear equations with constant coefficients, and these are not; gauss16 takes any",
-        )
+def _check_exact(method: str, system: States, dt: float | None) -> None:
+    what, equations = EXACT[method]
+    if not system._structure[what]:
+        raise InvalidInput("method", f"{method} needs {equations}, and here there are others; gauss16 takes any")
     if dt is not None:
-        raise InvalidInput("dt", f"{LINEAR} takes no steps; leave dt out")
+        raise InvalidInput("dt", f"{method} takes no steps; leave dt out")
 
 
 def _check_discrete(method: str, system: States, dt: float | None) -> None:

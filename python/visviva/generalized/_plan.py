@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
-from visviva.generalized._methods import LINEAR
+from visviva.generalized._methods import EXACT
 
 if TYPE_CHECKING:
     from visviva.generalized._system import GeneralizedSystem
@@ -40,7 +40,7 @@ class GeneralizedPlan(Shown):
     Examples
     --------
     >>> import visviva as vv
-    >>> vv.systems.pendulum().plan(t=1.0).method
+    >>> vv.systems.double_pendulum().plan(t=1.0).method
     'gauss16'
     """
 
@@ -54,10 +54,15 @@ class GeneralizedPlan(Shown):
         n, constraints = len(system.coordinates), system._constraints()
         held = found["holds_steps"] and asked["method"].startswith("gauss") and asked["dt"] is None
         steps = (
-            "none: exact at every output time" if asked["method"] == LINEAR
+            "none: exact at every output time" if asked["method"] in EXACT
             else f"{asked['dt']:g}, all alike" if asked["dt"] is not None
             else "chosen at the start, then held: energy is conserved" if held
             else "chosen as it goes"
+        )  # fmt: skip
+        equations = (
+            "linear, with constant coefficients" if found["linear"]
+            else "that of a pendulum" if found["pendulum"]
+            else "not linear"
         )  # fmt: skip
         rows = (
             ("coordinates", ", ".join(system.coordinates)),
@@ -67,7 +72,7 @@ class GeneralizedPlan(Shown):
             ("mass matrix", _MASS[found["mass_matrix"]]),
             ("accelerations", "of places alone" if found["nystrom"] else "of velocities, too"),
             ("operations", f"{found['operations']} per evaluation, for eight states at once"),
-            ("equations", "linear, with constant coefficients" if found["linear"] else "not linear"),
+            ("equations", equations),
             *([("kinks", "an absolute value, which turns within a step")] if found["kinks"] else []),
             ("method", asked["method"]),
             ("steps", steps),

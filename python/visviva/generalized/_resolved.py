@@ -22,6 +22,7 @@ from visviva._accuracy import (
     warn_of_step,
 )
 from visviva.errors import Interrupted
+from visviva.generalized._methods import EXACT
 from visviva.generalized._rows import rows_of_copies
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def warn_if_unresolved(
         After Ctrl-C while a motion is run again; whoever has the run gives it along.
     """
     # What is exact need not be looked at.
-    if asked["method"] == "matrix_exponential":
+    if asked["method"] in EXACT:
         return
     done = _Done(system, asked, starts, lasts, values, threads)
     if not system._structure["conserves_energy"]:

@@ -140,9 +140,10 @@ class Runs(States):
         t : float or array_like, shape (T,)
             The end, or output times in order; they change no step.
         method : str
-            ``auto``: where the equations are linear with constant coefficients, ``matrix_exponential``, which is exact
-            at any time and takes no steps; where an absolute value turns on the way, ``dop853``, which makes its steps
-            small there; else ``gauss16``, as also where a step is given.
+            ``auto``: where the equations are linear with constant coefficients, ``matrix_exponential``, and where the
+            one equation is that of a pendulum, ``elliptic_functions``, which are exact at any time and take no steps;
+            where an absolute value turns on the way, ``dop853``, which makes its steps small there; else ``gauss16``,
+            as also where a step is given.
             ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
             energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`:
             adaptive ones (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not
@@ -201,7 +202,7 @@ class Runs(States):
         Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3
         and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, section 1.5, parts
         2 and 3; constraints in part 3 there, and section VII.1 of the former. The matrix exponential: C. Moler &
-        C. Van Loan, SIAM Review 45 (2003) 3.
+        C. Van Loan, SIAM Review 45 (2003) 3. Elliptic functions: NIST Digital Library of Mathematical Functions, 22.19(i).
 
         Examples
         --------

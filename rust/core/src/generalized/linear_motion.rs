@@ -4,21 +4,21 @@
 //! that [`MatrixExponential`] moves. A and b are found in double-double, as what forces are at unit vectors: the rounding of a
 //! sum of two stiffnesses would be a stiffness to a mode that has little, that of a quotient would turn the phase.
 
-use super::events::{Interval, Watch};
+use super::exact::{ExactMotion, Flow};
 use super::model::{Kind, Model};
-use super::run::{Request, Solution};
 use crate::error::{Error, Result};
 use crate::expressions::graph::Dependence;
 use crate::expressions::linear::is_singular;
 use crate::expressions::precise::Precise;
 use crate::expressions::program::Output;
 use crate::expressions::{Graph, Id};
-use crate::numerics::double_double::{DoubleDouble, two_sum};
-use crate::numerics::matrix_exponential::{MatrixExponential, elapsed};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::matrix_exponential::MatrixExponential;
 use crate::numerics::real::Real;
-use crate::ode::run::Ending;
-use crate::parallel::Ticker;
 use rustc_hash::FxHashMap;
+
+/// Units of time from one look for events to the next: two radians of the fastest that turns.
+const UNITS: f64 = 4.0;
 
 /// Linear equations of 2·coordinates numbers.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ impl LinearMotion {
     }
 
     /// The flow with these parameters of the state and a 1 after it, forwards or backwards in time.
-    fn flow(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
+    fn matrix_exponential(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
         let (n, rows, numbers) = (self.n, self.rows, 2 * self.n);
         let mut state = vec![DoubleDouble::zero(); numbers];
         let constants = self.right.at(t0, &state, parameters);
@@ -100,131 +100,38 @@ impl LinearMotion {
         }
         Ok(MatrixExponential::new(matrix, numbers + 1, (end - t0).abs()))
     }
+}
 
-    /// The states at the output times of a run, or at its end.
-    ///
-    /// # Errors
-    /// A singular mass matrix.
-    pub fn solve(
-        &self,
-        request: &Request,
-        (y0, parameters): (&[f64], &[f64]),
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Solution> {
-        let (t0, end) = request.span;
-        let mut flow = self.flow(parameters, request.span)?;
+impl ExactMotion for LinearMotion {
+    fn flow(&self, (y0, parameters): (&[f64], &[f64]), span: (f64, f64)) -> Result<Box<dyn Flow>> {
         let mut start = y0.to_vec();
         start.push(1.0);
-        let mut solution = Solution::at(t0, y0);
-        let mut stop = None;
-        if !request.events.is_empty() {
-            let mut watch = Watch::new(&request.events, parameters);
-            match look(&mut flow, &start, request.span, &mut watch, ticker) {
-                Ok(stopped) => stop = stopped,
-                Err(Error::Interrupted) => solution.ending = Ending::Interrupted,
-                Err(error) => return Err(error),
-            }
-            solution.found = watch.found;
-            if solution.ending == Ending::Interrupted {
-                return Ok(solution);
-            }
-        }
-        let only_end = [end];
-        let beyond = |t: f64| stop.is_some_and(|stop| if t0 <= end { t > stop } else { t < stop });
-        for &t in request.outputs.as_deref().unwrap_or(&only_end) {
-            if beyond(t) {
-                break;
-            }
-            if ticker.tick().is_err() {
-                return Ok(Solution { ending: Ending::Interrupted, ..solution });
-            }
-            let (high, low) = elapsed(t, t0);
-            let state = if t == t0 {
-                start.clone()
-            } else if t < t0 {
-                flow.apply((-high, -low), &start)
-            } else {
-                flow.apply((high, low), &start)
-            };
-            if !state.iter().all(|number| number.is_finite()) {
-                let ending = Ending::NotFinite;
-                return Ok(Solution { ending, failure: ending.reason(), ..solution });
-            }
-            solution.t.push(t);
-            solution.y.extend(&state[..y0.len()]);
-            (solution.reached, solution.last_time) = (t, t);
-            solution.last_state.copy_from_slice(&state[..y0.len()]);
-        }
-        if let Some(stop) = stop {
-            (solution.ending, solution.reached) = (Ending::Stopped, stop);
-        }
-        Ok(solution)
+        Ok(Box::new(LinearFlow {
+            flow: self.matrix_exponential(parameters, span)?,
+            start,
+            backwards: span.1 < span.0,
+        }))
     }
 }
 
-/// Units of time from one look for events to the next: two radians of the fastest that turns.
-const UNITS: f64 = 4.0;
-
-/// Looks for events on the way; the time of the one that ends the run, if one does.
-fn look(
-    flow: &mut MatrixExponential,
-    start: &[f64],
-    (t0, end): (f64, f64),
-    watch: &mut Watch<'_>,
-    ticker: &mut Ticker<'_>,
-) -> Result<Option<f64>> {
-    let (h, numbers) = (UNITS * flow.unit_of_time(), start.len() - 1);
-    let (span, sign) = ((end - t0).abs(), if end < t0 { -1.0 } else { 1.0 });
-    watch.start(t0, &start[..numbers])?;
-    let (mut node, mut from) = (0.0, t0);
-    loop {
-        ticker.tick()?;
-        let (elapsed, next) = (node * h, (node + 1.0) * h);
-        let last = next >= span;
-        let length = if last { span - elapsed } else { h };
-        let to = if last { end } else { t0 + sign * next };
-        let mut y = flow.apply(two_sum(elapsed, length), start);
-        if !y.iter().all(|number| number.is_finite()) {
-            return Ok(None);
-        }
-        y.truncate(numbers);
-        let mut part = Part { flow, start, elapsed, length, span: (from, to), end: y, inside: vec![] };
-        let stop = watch.look(&mut part)?;
-        if stop.is_some() || last {
-            return Ok(stop);
-        }
-        (node, from) = (node + 1.0, to);
-    }
+/// The flow of linear equations from a start, with the 1 after it.
+struct LinearFlow {
+    flow: MatrixExponential,
+    start: Vec<f64>,
+    /// Whether time is turned around.
+    backwards: bool,
 }
 
-/// A part of a motion that takes no steps.
-struct Part<'a> {
-    flow: &'a mut MatrixExponential,
-    start: &'a [f64],
-    /// Since the start of the run.
-    elapsed: f64,
-    length: f64,
-    span: (f64, f64),
-    end: Vec<f64>,
-    inside: Vec<f64>,
-}
-
-impl Interval for Part<'_> {
-    fn span(&self) -> (f64, f64) {
-        self.span
+impl Flow for LinearFlow {
+    fn look(&self) -> f64 {
+        UNITS * self.flow.unit_of_time()
     }
 
-    fn end(&self) -> &[f64] {
-        &self.end
-    }
-
-    fn at(&mut self, theta: f64) -> Result<&[f64]> {
-        if theta == 1.0 {
-            return Ok(&self.end);
-        }
-        self.inside = self.flow.apply(two_sum(self.elapsed, theta * self.length), self.start);
-        self.inside.truncate(self.end.len());
-        Ok(&self.inside)
+    fn after(&mut self, (high, low): (f64, f64)) -> Vec<f64> {
+        let elapsed = if self.backwards { (-high, -low) } else { (high, low) };
+        let mut state = self.flow.apply(elapsed, &self.start);
+        let _ = state.pop();
+        state
     }
 }
 

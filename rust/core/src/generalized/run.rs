@@ -7,9 +7,9 @@ mod counted;
 
 use super::discrete::{self, DiscreteStep};
 use super::events::{Event, Found, Watch};
+use super::exact::{self, ExactMotion};
 use super::fixed::FixedSteps;
 use super::gauss::{self, GaussStep, Steps};
-use super::linear_motion::LinearMotion;
 use super::model::Model;
 use super::motion::Motion;
 use super::poles::Poles;
@@ -43,8 +43,8 @@ pub enum Integrator {
     Discrete(Arc<discrete::Equations>),
     /// A method of the registry.
     Table(&'static Method),
-    /// None: linear equations are solved at once.
-    Linear(Arc<LinearMotion>),
+    /// None: the motion is known at any time.
+    Exact(Arc<dyn ExactMotion>),
 }
 
 /// What is asked of a run.
@@ -252,7 +252,9 @@ fn solve_within(
                 GaussStep::new(method, (machine, model.form, model.needs().velocity), drive.state, steps, t0);
             drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
         }
-        Integrator::Linear(ref linear) => return linear.solve(request, (y0, parameters), drive.ticker),
+        Integrator::Exact(ref motion) => {
+            return exact::solve(&**motion, request, (y0, parameters), drive.ticker);
+        }
         Integrator::Discrete(ref equations) => {
             let h = request.fixed_step(equations.name())?;
             let trial = DiscreteStep::new(equations, parameters, drive.state, (t0, h));

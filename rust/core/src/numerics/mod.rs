@@ -13,6 +13,7 @@ pub mod functions;
 pub mod fused_double;
 pub(crate) mod integrals;
 pub mod inverse_cube;
+pub mod jacobi_elliptic;
 pub mod lanes;
 pub mod logarithm;
 pub mod matrix_exponential;

@@ -27,6 +27,7 @@ use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::Linear;
 use visviva_core::generalized::linear_motion::LinearMotion;
 use visviva_core::generalized::one_freedom::OneFreedom;
+use visviva_core::generalized::pendulum_motion::PendulumMotion;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
 use visviva_core::generalized::variation::variational;
 use visviva_core::generalized::{Kind, Model, Source};
@@ -42,6 +43,8 @@ pub(crate) struct GeneralizedModel {
     structure: Structure,
     /// The equations, if they are linear.
     linear: Option<Arc<LinearMotion>>,
+    /// The equation, if it is that of a pendulum.
+    pendulum: Option<Arc<PendulumMotion>>,
     /// What small motions are told by, once somebody has asked.
     small: OnceLock<Linear>,
 }
@@ -83,7 +86,9 @@ impl Described {
 impl GeneralizedModel {
     fn of(model: Model) -> Result<Self> {
         let linear = LinearMotion::of(&model).map(Arc::new);
-        Ok(Self { structure: Structure::of(&model), linear, model: Arc::new(model), small: OnceLock::new() })
+        let pendulum = PendulumMotion::of(&model).map(Arc::new);
+        let structure = Structure::of(&model);
+        Ok(Self { structure, linear, pendulum, model: Arc::new(model), small: OnceLock::new() })
     }
 
     /// One that further expressions may join.
@@ -117,6 +122,7 @@ impl GeneralizedModel {
         };
         result.set_item("mass_matrix", mass)?;
         result.set_item("linear", self.linear.is_some())?;
+        result.set_item("pendulum", self.pendulum.is_some())?;
         result.set_item("separable", found.separable)?;
         result.set_item("nystrom", found.nystrom)?;
         result.set_item("second_order", found.second_order)?;

@@ -21,6 +21,7 @@ use visviva_core::{Error, Result, registry};
 
 /// The method that takes no steps.
 const LINEAR: &str = "matrix_exponential";
+const PENDULUM: &str = "elliptic_functions";
 
 /// What is asked of a run.
 #[derive(FromPyObject)]
@@ -48,8 +49,15 @@ impl Asked<'_> {
             return Ok(Integrator::Discrete(Arc::new(discrete::Equations::new(&of.model, method)?)));
         }
         if name == LINEAR {
-            let linear = of.linear.clone().map(Integrator::Linear);
-            return linear.ok_or_else(|| Error::invalid("method", "the equations are not linear"));
+            let linear =
+                of.linear.clone().ok_or_else(|| Error::invalid("method", "the equations are not linear"));
+            return Ok(Integrator::Exact(linear?));
+        }
+        if name == PENDULUM {
+            let pendulum = of.pendulum.clone();
+            return Ok(Integrator::Exact(
+                pendulum.ok_or_else(|| Error::invalid("method", "the equation is not that of a pendulum"))?,
+            ));
         }
         let method = registry::method(name);
         method.map(Integrator::Table).ok_or_else(|| Error::invalid("method", format!("no method {name}")))

@@ -4,7 +4,7 @@
 use super::super::changes::Changes;
 use super::super::columns::{AT_ONCE, NOTHING, Row, Work, combined, larger};
 use super::super::step::MOST_ITERATIONS;
-use super::{Extension, MOVED, TERMS, integrals};
+use super::{ENOUGH, Extension, MOVED, Rows, TERMS, integrals};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -16,10 +16,9 @@ use crate::tiered;
 /// What is found of eight steps.
 #[derive(Clone, Debug)]
 pub(in super::super) struct ExtensionOfEight {
-    /// Rates at the places more.
-    rates: Vec<Row>,
-    /// Where the stages alone lead there, as of one trajectory, and where all rates do.
-    led: [Vec<Row>; 2],
+    /// Rates at the stages, and at the places more.
+    rates: [Vec<Row>; 2],
+    /// The numbers whose rates these are, and the coordinates of the second order, at the stages or at the places more.
     there: [Vec<Row>; 2],
     /// The most by which an iteration changed rates.
     changed: Vec<Lanes>,
@@ -37,10 +36,9 @@ pub(in super::super) struct FoundOfEight {
 impl ExtensionOfEight {
     pub(in super::super) fn new(evaluated: usize) -> Self {
         let rows = vec![NOTHING; evaluated];
-        let pair = [rows.clone(), rows.clone()];
+        let pair = [rows.clone(), rows];
         Self {
-            rates: rows,
-            led: pair.clone(),
+            rates: pair.clone(),
             there: pair,
             changed: vec![Lanes::zero(); evaluated],
             coefficients: vec![[Lanes::zero(); TERMS]; evaluated],
@@ -48,74 +46,73 @@ impl ExtensionOfEight {
     }
 }
 
-/// Where the stages alone lead, and the rates to begin with.
+/// What stages and places more add to a lane of a row, in the order of one trajectory.
+macro_rules! sum {
+    ($stages:expr, $weights:expr, $rates:expr, $i:expr, $lane:expr) => {{
+        let (weights, rates): (&Rows, &[Vec<Row>; 2]) = ($weights, $rates);
+        let (own, more) = (&rates[0][$i], &rates[1][$i]);
+        combined!($stages, own, j => V::splat(weights[0][j].0[$lane]))
+            + combined!($stages, more, j => V::splat(weights[1][j].0[$lane]))
+    }};
+}
+
+/// The rates to begin with, in the lanes that run.
 #[inline(always)]
 fn begin<V: Vector8>(tables: &Extension, work: &Work<'_>, of: &mut ExtensionOfEight) {
-    let Work { table, form, state, columns, h, running, .. } = work;
+    let Work { table, columns, running, .. } = work;
+    let stages = table.stages;
+    let [own, more] = &mut of.rates;
+    for ((row, own), more) in columns.rates.iter().zip(own).zip(more) {
+        for k in 0..stages {
+            own[k] = V::select(*running, V::load(row[k]), V::load(own[k])).store();
+            let guess = combined!(stages, row, j => V::splat(tables.guess[j].0[k]));
+            more[k] = V::select(*running, guess, V::load(more[k])).store();
+        }
+    }
+}
+
+/// Writes the numbers at the stages or at the places more that rates lead to.
+#[inline(always)]
+fn place<V: Vector8>(tables: &Extension, work: &Work<'_>, of: &mut ExtensionOfEight, to: usize) {
+    let Work { table, form, velocity, state, h, .. } = work;
     let (evaluated, second_order) = (form.evaluated(), matches!(form, Form::SecondOrder(_)));
     let (y, rest) = state.all();
     let (stages, h) = (table.stages, V::load(*h));
     let h2 = h * h;
     for i in 0..evaluated {
-        let (row, from) = (&columns.rates[i], if second_order { evaluated + i } else { i });
+        let from = if second_order { evaluated + i } else { i };
         for k in 0..stages {
-            let guess = combined!(stages, row, j => V::splat(tables.guess[j].0[k]));
-            of.rates[i][k] = V::select(*running, guess, V::load(of.rates[i][k])).store();
-            let way = combined!(stages, row, j => V::splat(tables.way[0][j].0[k]));
-            of.led[0][i][k] = way.multiply_add(h, V::load(rest[from])).store();
             if second_order {
-                let passed = V::splat(tables.places.0[k]) * h;
+                let passed = V::splat(tables.places[to].0[k]) * h;
                 let drift = passed.multiply_add(V::load(y[from]), V::load(rest[i]));
-                let way_of_way = combined!(stages, row, j => V::splat(tables.way_of_way[0][j].0[k]));
-                of.led[1][i][k] = way_of_way.multiply_add(h2, drift).store();
-            }
-        }
-    }
-}
-
-/// Writes the numbers at all places that rates lead to.
-#[inline(always)]
-fn place<V: Vector8>(tables: &Extension, work: &Work<'_>, of: &mut ExtensionOfEight) {
-    let Work { table, form, velocity, state, h, .. } = work;
-    let (evaluated, second_order) = (form.evaluated(), matches!(form, Form::SecondOrder(_)));
-    let y = state.all().0;
-    let (stages, h) = (table.stages, V::load(*h));
-    let h2 = h * h;
-    for i in 0..evaluated {
-        let (row, from) = (&of.rates[i], if second_order { evaluated + i } else { i });
-        for k in 0..stages {
-            if second_order {
-                let sum = combined!(stages, row, j => V::splat(tables.way_of_way[1][j].0[k]));
-                let place = sum.multiply_add(h2, V::load(of.led[1][i][k])) + V::load(y[i]);
-                of.there[1][i][k] = place.store();
+                let way = sum!(stages, &tables.way_of_way[to], &of.rates, i, k).multiply_add(h2, drift);
+                of.there[1][i][k] = (way + V::load(y[i])).store();
             }
             if !second_order || *velocity {
-                let sum = combined!(stages, row, j => V::splat(tables.way[1][j].0[k]));
-                let moved = sum.multiply_add(h, V::load(of.led[0][i][k])) + V::load(y[from]);
-                of.there[0][i][k] = moved.store();
+                let way = sum!(stages, &tables.way[to], &of.rates, i, k).multiply_add(h, V::load(rest[from]));
+                of.there[0][i][k] = (way + V::load(y[from])).store();
             }
         }
     }
 }
 
-/// Evaluates rates at all places, in the lanes of the mask.
+/// Evaluates rates at the stages or at the places more, in the lanes of the mask.
 #[inline(always)]
 fn evaluate<V: Vector8 + Scalar>(
     tables: &Extension,
     work: &mut Work<'_>,
     of: &mut ExtensionOfEight,
-    active: Bits,
+    (to, active): (usize, Bits),
 ) {
     let Work { table, form, velocity, machine, h, t, .. } = work;
     let (evaluated, second_order) = (form.evaluated(), matches!(form, Form::SecondOrder(_)));
     let (stages, h, t) = (table.stages, V::load(*h), V::load(*t));
     let (code, registers) = machine.parts();
     let (variables, outputs) = (code.variables(), code.output_registers());
-    of.changed.fill(Lanes::zero());
     for first in (0..stages).step_by(AT_ONCE) {
         for block in 0..AT_ONCE {
             let k = (first + block).min(stages - 1);
-            registers[variables * AT_ONCE + block] = (V::splat(tables.places.0[k]) * h + t).store();
+            registers[variables * AT_ONCE + block] = (V::splat(tables.places[to].0[k]) * h + t).store();
             for i in 0..evaluated {
                 if second_order {
                     registers[i * AT_ONCE + block] = of.there[1][i][k];
@@ -131,7 +128,7 @@ fn evaluate<V: Vector8 + Scalar>(
             let mut most = V::load(of.changed[i]);
             for block in 0..AT_ONCE.min(stages - first) {
                 let found = V::load(registers[usize::from(outputs[i]) * AT_ONCE + block]);
-                let rate = &mut of.rates[i][first + block];
+                let rate = &mut of.rates[to][i][first + block];
                 let before = V::load(*rate);
                 // As of one trajectory: an end may have no rate.
                 let is_a_number = (found - found).less_equal(V::zero());
@@ -154,12 +151,16 @@ fn find_body<V: Vector8 + Scalar>(
     let (stages, running) = (work.table.stages, work.running);
     begin::<V>(tables, work, of);
     let mut changes = [Changes::default(); WIDTH];
-    let mut limit = Lanes::splat(f64::INFINITY);
-    let mut settled = FoundOfEight { converged: Bits::splat(false), evaluations: [MOST_ITERATIONS; WIDTH] };
+    let (mut last, mut limit) = (Lanes::zero(), Lanes::splat(f64::INFINITY));
+    let mut settled = FoundOfEight { converged: Bits::splat(false), evaluations: [0; WIDTH] };
     let mut active = running;
     for iteration in 1..=MOST_ITERATIONS {
-        place::<V>(tables, work, of);
-        evaluate::<V>(tables, work, of, active);
+        of.changed.fill(Lanes::zero());
+        let first = usize::from(iteration == 1);
+        for to in first..2 {
+            place::<V>(tables, work, of, to);
+            evaluate::<V>(tables, work, of, (to, active));
+        }
         let length = V::splat(MOVED) * V::load(work.h).abs();
         let mut most = V::zero();
         for (&measure, &changed) in work.columns.measures.iter().zip(&of.changed) {
@@ -169,11 +170,15 @@ fn find_body<V: Vector8 + Scalar>(
         let most = most.store();
         let open = active;
         for lane in (0..WIDTH).filter(|&lane| open.lane(lane)) {
-            let judged = changes[lane].judged(most.0[lane], || work.columns.limit(lane));
+            settled.evaluations[lane] += 2 - first as u32;
+            let change = most.0[lane];
+            let enough = change * change <= ENOUGH * last.0[lane];
+            last.0[lane] = change;
+            let judged =
+                if enough { Some(true) } else { changes[lane].judged(change, || work.columns.limit(lane)) };
             limit.0[lane] = changes[lane].limit;
             if let Some(converged) = judged {
                 let alone = Bits(1 << lane);
-                settled.evaluations[lane] = iteration;
                 settled.converged = if converged { settled.converged.or(alone) } else { settled.converged };
                 active = active.and(alone.not());
             }
@@ -184,11 +189,7 @@ fn find_body<V: Vector8 + Scalar>(
     }
     for (i, coefficients) in of.coefficients.iter_mut().enumerate() {
         for (term, coefficient) in coefficients.iter_mut().enumerate().take(tables.terms) {
-            let [by_stages, by_places] = &tables.coefficients[term / WIDTH];
-            let (own, row) = (term % WIDTH, &work.columns.rates[i]);
-            let by_stages = combined!(stages, row, j => V::splat(by_stages[j].0[own]));
-            let row = &of.rates[i];
-            let found = by_stages + combined!(stages, row, j => V::splat(by_places[j].0[own]));
+            let found = sum!(stages, &tables.coefficients[term / WIDTH], &of.rates, i, term % WIDTH);
             *coefficient = V::select(running, found, V::load(*coefficient)).store();
         }
     }

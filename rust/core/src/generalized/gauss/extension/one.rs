@@ -3,7 +3,7 @@
 use super::super::changes::Changes;
 use super::super::columns::larger;
 use super::super::step::{MOST_ITERATIONS, Work, combined, largest, own_lanes};
-use super::{Extension, MOVED, TERMS, integrals};
+use super::{ENOUGH, Extension, MOVED, Rows, TERMS, integrals};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
@@ -15,10 +15,8 @@ use crate::tiered;
 /// What is found of a step.
 #[derive(Clone, Debug)]
 pub(in super::super) struct ExtensionOfOne {
-    /// Rates at the places more.
-    rates: Vec<Lanes>,
-    /// Where the stages alone lead there: numbers whose rates these are, and coordinates of the second order, without those of the start.
-    led: [Vec<Lanes>; 2],
+    /// Rates at the stages, and at the places more.
+    rates: [Vec<Lanes>; 2],
     /// Coefficients of the polynomials of rates.
     coefficients: Vec<[Lanes; 2]>,
 }
@@ -26,10 +24,37 @@ pub(in super::super) struct ExtensionOfOne {
 impl ExtensionOfOne {
     pub(in super::super) fn new(evaluated: usize) -> Self {
         let row = vec![Lanes([0.0; WIDTH]); evaluated];
-        Self {
-            rates: row.clone(),
-            led: [row.clone(), row],
-            coefficients: vec![[Lanes([0.0; WIDTH]); 2]; evaluated],
+        Self { rates: [row.clone(), row], coefficients: vec![[Lanes([0.0; WIDTH]); 2]; evaluated] }
+    }
+}
+
+/// What stages and places more add to a row of lanes.
+#[inline(always)]
+fn sum<V: Vector8>(weights: &Rows, rates: &[Vec<Lanes>; 2], i: usize) -> V {
+    combined::<V>(&weights[0], &rates[0][i]) + combined::<V>(&weights[1], &rates[1][i])
+}
+
+/// Writes the numbers at the stages or at the places more that rates lead to, and the times there.
+#[inline(always)]
+fn place<V: Vector8>(tables: &Extension, work: &mut Work<'_>, of: &ExtensionOfOne, to: usize) {
+    let Work { form, velocity, machine, state, t, h, .. } = work;
+    let (code, registers) = machine.parts();
+    let evaluated = form.evaluated();
+    let second_order = matches!(form, Form::SecondOrder(_));
+    let (y, rest) = state.all();
+    let (h, h2) = (V::splat(*h), V::splat(*h * *h));
+    let passed = V::load(tables.places[to]) * h;
+    registers[code.variables()] = (passed + V::splat(*t)).store();
+    for i in 0..evaluated {
+        let from = if second_order { evaluated + i } else { i };
+        if second_order {
+            let drift = passed.multiply_add(V::splat(y[from]), V::splat(rest[i]));
+            let way = sum::<V>(&tables.way_of_way[to], &of.rates, i).multiply_add(h2, drift);
+            registers[i] = (way + V::splat(y[i])).store();
+        }
+        if !second_order || *velocity {
+            let way = sum::<V>(&tables.way[to], &of.rates, i).multiply_add(h, V::splat(rest[from]));
+            registers[from] = (way + V::splat(y[from])).store();
         }
     }
 }
@@ -41,64 +66,51 @@ fn find_body<V: Vector8 + Scalar>(
     work: &mut Work<'_>,
     of: &mut ExtensionOfOne,
 ) -> (bool, u32) {
-    let Work { table, form, velocity, machine, state, stages, t, h, .. } = work;
-    let (code, registers) = machine.parts();
-    let outputs = code.output_registers();
-    let evaluated = form.evaluated();
-    let second_order = matches!(form, Form::SecondOrder(_));
-    let all_move = !second_order || *velocity;
-    let (y, rest) = state.all();
-    let (own, length) = (own_lanes(table.stages), h.abs());
-    let (h, h2) = (V::splat(*h), V::splat(*h * *h));
-    let passed = V::load(tables.places) * h;
-    registers[code.variables()] = (passed + V::splat(*t)).store();
+    let (evaluated, own, length) = (work.form.evaluated(), own_lanes(work.table.stages), work.h.abs());
     for i in 0..evaluated {
-        let (rates, from) = (&stages.rates[i], if second_order { evaluated + i } else { i });
-        of.rates[i] = combined::<V>(&tables.guess, rates).store();
-        of.led[0][i] = combined::<V>(&tables.way[0], rates).multiply_add(h, V::splat(rest[from])).store();
-        if second_order {
-            let drift = passed.multiply_add(V::splat(y[from]), V::splat(rest[i]));
-            of.led[1][i] = combined::<V>(&tables.way_of_way[0], rates).multiply_add(h2, drift).store();
-        }
+        of.rates[0][i] = work.stages.rates[i];
+        of.rates[1][i] = combined::<V>(&tables.guess, &work.stages.rates[i]).store();
     }
     let mut changes = Changes::default();
-    let mut settled = (false, MOST_ITERATIONS);
+    let (mut last, mut settled, mut evaluations) = (0.0, false, 0);
     for iteration in 1..=MOST_ITERATIONS {
-        for i in 0..evaluated {
-            let (rates, from) = (&of.rates[i], if second_order { evaluated + i } else { i });
-            if second_order {
-                let place =
-                    combined::<V>(&tables.way_of_way[1], rates).multiply_add(h2, V::load(of.led[1][i]));
-                registers[i] = (place + V::splat(y[i])).store();
-            }
-            if all_move {
-                let moved = combined::<V>(&tables.way[1], rates).multiply_add(h, V::load(of.led[0][i]));
-                registers[from] = (moved + V::splat(y[from])).store();
-            }
-        }
-        execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
         let mut change = V::zero();
-        for i in 0..evaluated {
-            let (found, before) = (V::load(registers[usize::from(outputs[i])]), V::load(of.rates[i]));
-            // An end may have no rate, as on a pole of the coordinates: there is that of the polynomial.
-            let found = V::select((found - found).less_equal(V::zero()), found, before);
-            let scale = V::splat(Real::min(stages.measures[i], changes.limit) * (MOVED * length));
-            let moved = V::select(own, (found - before).abs(), V::zero());
-            change = larger(moved * scale, change);
-            of.rates[i] = found.store();
+        // Rates at the stages are those of the polynomial at first.
+        for to in usize::from(iteration == 1)..2 {
+            place::<V>(tables, work, of, to);
+            let Work { machine, stages, .. } = &mut *work;
+            let (code, registers) = machine.parts();
+            execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
+            evaluations += 1;
+            let outputs = code.output_registers();
+            for i in 0..evaluated {
+                let rate = &mut of.rates[to][i];
+                let (found, before) = (V::load(registers[usize::from(outputs[i])]), V::load(*rate));
+                // An end may have no rate, as on a pole of the coordinates: there is that of the polynomial.
+                let found = V::select((found - found).less_equal(V::zero()), found, before);
+                let scale = V::splat(Real::min(stages.measures[i], changes.limit) * (MOVED * length));
+                let moved = V::select(own, (found - before).abs(), V::zero());
+                change = larger(moved * scale, change);
+                *rate = found.store();
+            }
         }
-        if let Some(converged) = changes.judged(largest(change.store()), || stages.limit()) {
-            settled = (converged, iteration);
+        let change = largest(change.store());
+        settled = change * change <= ENOUGH * last;
+        last = change;
+        if settled {
+            break;
+        }
+        if let Some(converged) = changes.judged(change, || work.stages.limit()) {
+            settled = converged;
             break;
         }
     }
     for (i, coefficients) in of.coefficients.iter_mut().enumerate() {
-        for (coefficients, [by_stages, by_places]) in coefficients.iter_mut().zip(&tables.coefficients) {
-            let by_stages = combined::<V>(by_stages, &stages.rates[i]);
-            *coefficients = (by_stages + combined::<V>(by_places, &of.rates[i])).store();
+        for (coefficients, weights) in coefficients.iter_mut().zip(&tables.coefficients) {
+            *coefficients = sum::<V>(weights, &of.rates, i).store();
         }
     }
-    settled
+    (settled, evaluations)
 }
 
 /// Σ over the terms of coefficients times integrals.
