@@ -226,7 +226,8 @@ class Flow:
         Raises
         ------
         InvalidInput
-            With more than 16 coordinates; for absolute values.
+            With more than 16 coordinates, where the variational equations are made of very many operations; for
+            absolute values.
         ConvergenceError
             At a singularity.
 
@@ -332,7 +333,8 @@ class Flow:
         Raises
         ------
         InvalidInput
-            For constraints, absolute values, more than 16 coordinates, or the time of the start.
+            For constraints, absolute values, variational equations of very many operations (of more than 16
+            coordinates), or the time of the start.
         ConvergenceError
             If no such motion is found; its message tells how near the nearest came, and whether the places are
             conjugate to each other.

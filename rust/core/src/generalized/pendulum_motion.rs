@@ -175,7 +175,8 @@ impl PendulumFlow {
         // 1 − k², without what cancels.
         let complement = (cosine - pace.abs()) * (cosine + pace.abs());
         let square = sine * sine + pace * pace;
-        if square.high() == 0.0 {
+        // At rest, at the lowest point or at the highest.
+        if square.high() == 0.0 || (complement.high() == 0.0 && pace.high() == 0.0) {
             return flow;
         }
         if complement.high() > 0.0 {

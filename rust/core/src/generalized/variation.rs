@@ -13,8 +13,11 @@ use crate::ode::system::Form;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
-/// Coordinates of the largest system: Φ has the square of twice as many numbers.
-const MOST_COORDINATES: usize = 16;
+/// Systems of so many coordinates have the flow's derivatives whatever their rates are made of: Φ has the square of twice as many
+/// numbers.
+const SMALL: usize = 16;
+/// Those of larger ones may be made of so many operations, for each number of the state those of all rates.
+const MOST_OPERATIONS: usize = 400_000;
 
 /// The rates of all numbers of a state as expressions.
 pub(super) fn rates_as_nodes(model: &mut Model) -> Vec<Id> {
@@ -46,13 +49,17 @@ pub(super) fn rates_as_nodes(model: &mut Model) -> Vec<Id> {
 pub fn variational(model: &Model) -> Result<Model> {
     let mut model = model.clone();
     let n = model.numbers();
-    if model.source.coordinates > MOST_COORDINATES {
+    let mut rates = rates_as_nodes(&mut model);
+    let operations = n * model.source.graph.reachable(&rates).len();
+    if model.source.coordinates > SMALL && operations > MOST_OPERATIONS {
         return Err(Error::invalid(
-            "L",
-            format!("the flow's derivatives are those of up to {MOST_COORDINATES} coordinates"),
+            "system",
+            format!(
+                "its variational equations would be made of some {operations} operations, where up to {MOST_OPERATIONS} \
+                 are taken of more than {SMALL} coordinates; compare runs from neighboring starts, as an ensemble"
+            ),
         ));
     }
-    let mut rates = rates_as_nodes(&mut model);
     let graph: &mut Graph = &mut model.source.graph;
     let state: Vec<Id> = (0..n as u32).map(|i| graph.variable(i)).collect();
     let entries: Vec<Id> = (0..(n * n) as u32).map(|k| graph.variable(n as u32 + k)).collect();

@@ -83,11 +83,11 @@ pub(crate) fn scattering_branches<'py>(
         let found = for_chunks(threads, angle.len(), ticker, |at, ticker| {
             structure.branches(number_at(&angle, at), ticker)
         })?;
-        for branches in found {
+        for (at, branches) in found.iter().enumerate() {
             counts.push(branches.len());
-            for branch in &branches {
-                let numbers =
-                    [branch.impact_parameter, branch.angle, branch.derivative, branch.cross_section()];
+            for branch in branches {
+                let part = branch.cross_section(number_at(&angle, at));
+                let numbers = [branch.impact_parameter, branch.angle, branch.derivative, part];
                 for (column, number) in columns.iter_mut().zip(numbers) {
                     column.push(number);
                 }

@@ -21,21 +21,20 @@ pub struct Branch {
     pub impact_parameter: f64,
     /// ψ, signed and not folded.
     pub angle: f64,
-    /// π − |ψ|.
-    pub complement: f64,
     /// dψ/db.
     pub derivative: f64,
 }
 
 impl Branch {
-    /// dσ/dΩ = b/(|sin ψ| |dψ/db|), and its limit head-on.
-    pub fn cross_section(&self) -> f64 {
+    /// dσ/dΩ = b/(|sin ψ| |dψ/db|) at the angle θ that it leads to, and its limit head-on.
+    ///
+    /// The sine is that of the angle asked for: near a glory that of the branch has no digits, as its ψ is off by what a
+    /// quadrature leaves.
+    pub fn cross_section(&self, angle: f64) -> f64 {
         if self.impact_parameter == 0.0 {
             return 1.0 / (self.derivative * self.derivative);
         }
-        let sine =
-            if self.angle.abs() > 1.0 && self.angle.abs() < PI + 1.0 { self.complement } else { self.angle };
-        (self.impact_parameter / sin(sine).abs()) / self.derivative.abs()
+        (self.impact_parameter / sine(angle)) / self.derivative.abs()
     }
 }
 
@@ -57,7 +56,8 @@ impl Structure<'_> {
             let parts = (0_u32..).flat_map(|n| [2.0 * f64::from(n) + part, 2.0 * f64::from(n + 1) - part]);
             return Ok(winding(square, parts));
         }
-        let mut found: Vec<Sample> = Vec::new();
+        // What it leads to, and where.
+        let mut found: Vec<(f64, Sample)> = Vec::new();
         for stretch in &self.stretches {
             let (low, high) = range(stretch);
             let most = ((low.abs().max(high.abs()) + angle) / (2.0 * PI)).ceil() as i64;
@@ -68,25 +68,25 @@ impl Structure<'_> {
                     let twice =
                         target == whole + angle && (angle == 0.0 || angle == PI) && target != whole - angle;
                     if !twice && target >= low && target <= high {
-                        found.extend(self.solve(stretch, target, ticker)?);
+                        found.extend(self.solve(stretch, target, ticker)?.map(|sample| (target, sample)));
                     }
                 }
             }
         }
         for target in [angle, -angle] {
             if let Some(beyond) = self.tail(target, ticker)? {
-                found.extend(self.solve(&beyond, target, ticker)?);
+                found.extend(self.solve(&beyond, target, ticker)?.map(|sample| (target, sample)));
             }
         }
         for target in [angle, -angle] {
-            found.extend(self.grazing(target));
+            found.extend(self.grazing(target).map(|sample| (target, sample)));
         }
-        found.sort_by(|a, b| a.b.total_cmp(&b.b));
-        found.dedup_by(|a, b| a.b == b.b);
-        let branch = |sample: &Sample| Branch {
+        found.sort_by(|(a, one), (b, other)| one.b.total_cmp(&other.b).then(a.total_cmp(b)));
+        // Where two stretches meet both have it; beside a glory two angles may have the same b, as it is rounded.
+        found.dedup_by(|(a, one), (b, other)| a == b && one.b == other.b);
+        let branch = |(_, sample): &(f64, Sample)| Branch {
             impact_parameter: sample.b,
             angle: sample.angle,
-            complement: sample.complement,
             derivative: sample.derivative,
         };
         Ok(found.iter().map(branch).collect())
@@ -110,7 +110,8 @@ impl Structure<'_> {
             angle
         };
         // From +0 on: an empty sum of floats is −0.
-        Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).fold(0.0, |sum, part| sum + part))
+        let branches = self.branches(angle, ticker)?;
+        Ok(branches.iter().map(|branch| branch.cross_section(angle)).fold(0.0, |sum, part| sum + part))
     }
     /// dσ/dΩ of the projectile in the laboratory, all branches of either kind together; 0 where none leads.
     ///

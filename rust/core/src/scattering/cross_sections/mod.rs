@@ -247,7 +247,6 @@ fn winding(square: f64, parts: impl Iterator<Item = f64>) -> Vec<Branch> {
         found.push(Branch {
             impact_parameter: b,
             angle: -PI * x,
-            complement: PI * (1.0 - x),
             derivative: PI * b * (less / square) * (less / q),
         });
     }
