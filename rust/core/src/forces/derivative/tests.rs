@@ -6,8 +6,8 @@ use crate::forces::context::{Arrangement, Context, System, packed_place};
 use crate::forces::gravity::{FewBodies, newton::Gravity};
 use crate::forces::{Force, ForceDeclaration, ForceTerm, Phase};
 use crate::forces::{
-    coulomb, driven_force, harmonic, linear_drag, quadratic_drag, rotating_frame, spring,
-    uniform_electric_field, uniform_field, uniform_magnetic_field,
+    central_field, coulomb, driven_force, harmonic, linear_drag, pair_potential, quadratic_drag,
+    rotating_frame, spring, uniform_electric_field, uniform_field, uniform_magnetic_field,
 };
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
@@ -15,6 +15,7 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
 use crate::parallel::{Control, Ticker};
 use crate::potentials::parameters::Value;
+use crate::registry;
 use crate::units::Units;
 use std::sync::Arc;
 
@@ -208,11 +209,35 @@ fn others() {
     }
 }
 
+#[test]
+fn potentials_along_lines() {
+    let [power, morse, plummer] = [
+        ("power_law", vec![-1.5, 1.0]),
+        ("morse", vec![0.75, 0.5, 1.25]),
+        ("plummer", vec![-1.5, 0.75]),
+    ]
+    .map(|(name, values)| {
+        let values: Vec<Value> = values.into_iter().map(Value::Number).collect();
+        Value::Potential(registry::potential(name).unwrap().build(&values).unwrap())
+    });
+    for potential in [power, morse, plummer] {
+        let center = Value::Vector([-1.0, 0.25, -0.5]);
+        let between = made(&pair_potential::DECLARATION, vec![potential.clone()]);
+        let around = made(&central_field::DECLARATION, vec![potential, center]);
+        for count in [2, 5, 19] {
+            for components in [2, 3] {
+                check(&between, count, 0, components);
+                check(&around, count, 0, components);
+            }
+        }
+    }
+}
+
 /// To rounding: beside differences of numbers of twice the digits.
 #[test]
 fn gravity_to_the_last_digits() {
-    let (bodies, G) = (Bodies::new(5, 0), 1.0);
-    let term: Arc<dyn ForceTerm> = Arc::new(Gravity::new(G, 0.0));
+    let bodies = Bodies::new(5, 0);
+    let term: Arc<dyn ForceTerm> = Arc::new(Gravity::new(1.0, 0.0));
     let [found, _] = compared(&term, &bodies, Arrangement::Batched, 3);
     let shape = Shape { rows: 5, components: 3 };
     let strength = bodies.mass.iter().map(|&mass| DoubleDouble::from(mass)).collect();
