@@ -6,7 +6,7 @@ use crate::forces::context::{Arrangement, Context, System, packed_place};
 use crate::forces::gravity::{FewBodies, newton::Gravity};
 use crate::forces::{Force, ForceDeclaration, ForceTerm, Phase};
 use crate::forces::{
-    central_field, coulomb, driven_force, harmonic, linear_drag, pair_potential, quadratic_drag,
+    central_field, coulomb, damper, driven_force, harmonic, linear_drag, pair_potential, quadratic_drag,
     rotating_frame, spring, uniform_electric_field, uniform_field, uniform_magnetic_field,
 };
 use crate::numerics::double_double::DoubleDouble;
@@ -201,6 +201,10 @@ fn others() {
         made(&uniform_electric_field::DECLARATION, vec![vector.clone(), of_each()]),
         made(&uniform_magnetic_field::DECLARATION, vec![turning, of_each()]),
         made(&driven_force::DECLARATION, vec![vector, Value::Number(2.0), Value::Number(0.25)]),
+        made(&damper::DECLARATION, {
+            let [i, j] = links();
+            vec![i, j, Value::Numbers(vec![1.5, 0.5])]
+        }),
         springs(vec![0.0]),
         springs(vec![0.5, 0.0]),
     ];
@@ -211,15 +215,12 @@ fn others() {
 
 #[test]
 fn potentials_along_lines() {
-    let [power, morse, plummer] = [
-        ("power_law", vec![-1.5, 1.0]),
-        ("morse", vec![0.75, 0.5, 1.25]),
-        ("plummer", vec![-1.5, 0.75]),
-    ]
-    .map(|(name, values)| {
-        let values: Vec<Value> = values.into_iter().map(Value::Number).collect();
-        Value::Potential(registry::potential(name).unwrap().build(&values).unwrap())
-    });
+    let [power, morse, plummer] =
+        [("power_law", vec![-1.5, 1.0]), ("morse", vec![0.75, 0.5, 1.25]), ("plummer", vec![-1.5, 0.75])]
+            .map(|(name, values)| {
+                let values: Vec<Value> = values.into_iter().map(Value::Number).collect();
+                Value::Potential(registry::potential(name).unwrap().build(&values).unwrap())
+            });
     for potential in [power, morse, plummer] {
         let center = Value::Vector([-1.0, 0.25, -0.5]);
         let between = made(&pair_potential::DECLARATION, vec![potential.clone()]);
