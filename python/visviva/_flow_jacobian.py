@@ -73,8 +73,8 @@ def flow_jacobian_of(
 
 _LOST = "derivatives of the motion are off by {:.1g} of what they add up to, as one of all numbers together tells"
 _CURE = (
-    "what neighbors become in between, as in a close encounter, or rounding far from the origin, hides them; take "
-    "shorter spans, another origin, or a Lagrangian, whose derivatives are exact"
+    "what neighbors become in between, as in a close encounter, hides them, or, under forces whose derivatives are "
+    "differences, rounding far from the origin; take a smaller tolerance, shorter spans, or another origin"
 )
 
 

@@ -286,9 +286,11 @@ class Runnable(Shown, ABC, Generic[_Result]):
         """Derivatives of the state at a time with respect to the state at the start: the state transition matrix.
 
         A small difference of each number of the start goes by the linear equations of the motion beside it. All forces
-        do, and all methods but ``taylor`` and those of Boris. Derivatives of forces are right to 11 digits and more, of
-        which a motion loses what neighbors become larger in between than at the end, as at a narrow pericenter: one
-        more difference, of all numbers together, tells it.
+        do, and all methods but ``taylor`` and those of Boris. Gravity, charges, potentials, springs, dampers, uniform
+        fields, rotating frames, linear and quadratic drag, and formulas without roots that may vanish have exact
+        derivatives; what is off is what steps leave, so a smaller `rtol` gives more digits. Those of other forces are
+        differences, right to 11 digits and more. Of either a motion loses what neighbors become larger in between than
+        at the end, as at a narrow pericenter: one more difference, of all numbers together, tells it.
 
         Units: those of the scene, a row those of a number of the state over those of each.
 

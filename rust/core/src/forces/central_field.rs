@@ -3,7 +3,9 @@
 use super::approach::{self, Moving};
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context, System};
+use super::derivative::Derivative;
 use super::limits::{check_force, outside};
+use super::lines::AroundPoint;
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
@@ -49,11 +51,9 @@ pub struct CentralField {
     center: [f64; 3],
 }
 
-impl ForceTerm for CentralField {
-    fn declaration(&self) -> &'static ForceDeclaration {
-        &DECLARATION
-    }
-    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+impl CentralField {
+    /// What acts on the bodies of a context, in its units.
+    fn field(&self, context: &Context<'_>) -> (Arc<dyn Potential>, Around) {
         let potential = self.potential.scaled(context.units);
         let center = |system: &System<'_>, c: usize| {
             context.units.take(context.own(self, system).center[c], [1, 0, 0])
@@ -65,9 +65,23 @@ impl ForceTerm for CentralField {
             numbers: context.potentials(&*potential, |system| &context.own(self, system).potential),
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
         };
+        (potential, field)
+    }
+}
+
+impl ForceTerm for CentralField {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let (potential, field) = self.field(context);
         let length2 = approach::lengths2(context, |system| &context.own(self, system).potential);
         let together = context.arrangement == Arrangement::Packed;
         Box::new(Kernel { potential, field, length2, together })
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let (potential, field) = self.field(context);
+        Some(AroundPoint::boxed(potential, field))
     }
     fn potential_and_virial(
         &self,

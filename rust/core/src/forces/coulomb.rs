@@ -5,9 +5,10 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
+use super::derivative::{Along, Derivative};
 use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::{Turns, Weight};
-use super::gravity::{energy, newton, series};
+use super::gravity::{derivative, energy, newton, series};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
@@ -122,6 +123,15 @@ impl ForceTerm for Coulomb {
             let charges: Vec<f64> = bodies.iter().map(|&body| self.near(body)).collect();
             Charges { weights: Weight::of_turns(&charges), factor: self.factors(context)[0] }
         })
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let near = |system: &System<'_>, slot: usize| context.own(self, system).near(system.bodies[slot]);
+        let softening = |system: &System<'_>| context.own(self, system).softening;
+        Some(Box::new(Change {
+            field: derivative::attraction(context, near, softening),
+            scratch: vec![Lanes::zero(); context.shape.len()],
+            factor: self.factors(context),
+        }))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         Some(Box::new(CoulombSeries {
@@ -320,5 +330,29 @@ impl Force<Lanes> for Kernel {
     }
     fn adds(&self) -> Adds {
         Adds::Once
+    }
+}
+
+/// How that changes along a direction.
+struct Change {
+    field: Box<dyn Derivative<Lanes>>,
+    scratch: Vec<Lanes>,
+    factor: Vec<Lanes>,
+}
+
+impl Derivative<Lanes> for Change {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        along: Along<'_, Lanes>,
+        change: &mut [Lanes],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.field.apply(phase, along, &mut self.scratch, ticker)?;
+        kernel_tier(&self.scratch, &self.factor, change, true);
+        Ok(())
+    }
+    fn stops_midway(&self) -> bool {
+        self.field.stops_midway()
     }
 }

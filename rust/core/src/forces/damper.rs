@@ -5,6 +5,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::derivative::{Along, Derivative};
 use super::links::series::{LinkLaw, LinkSeries, Numbers};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
@@ -104,6 +105,9 @@ impl ForceTerm for Dampers {
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         Box::new(self.acting(context))
     }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        Some(Box::new(self.acting(context)))
+    }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let Kernel { linked, coefficient } = self.acting(context);
         let nothing = vec![Lanes::zero(); coefficient.len()];
@@ -167,14 +171,18 @@ struct Kernel {
     coefficient: OfLinks,
 }
 
-/// Adds the drag of a damper to the accelerations of its ends, whose numbers are at these places.
+/// Places and velocities, in the lanes or one after another.
+type Moving<'a, S> = (&'a [S], &'a [S]);
+
+/// Adds the drag of a damper to the accelerations of its ends, whose numbers are at these places; or what it changes by along a
+/// direction.
 #[inline(always)]
 fn act<S: Real>(
     coefficient: S,
     (i, j): (usize, usize),
     (stride, components): (usize, usize),
     inverse_mass: &[S],
-    (q, v): (&[S], &[S]),
+    ((q, v), along): (Moving<'_, S>, Option<Moving<'_, S>>),
     a: &mut [S],
 ) {
     let mut d = [S::zero(); 3];
@@ -185,15 +193,38 @@ fn act<S: Real>(
         closing += d[c] * (v[c * stride + j] - v[c * stride + i]);
     }
     let share = coefficient * closing / square;
+    let mut force = [S::zero(); 3];
     for c in 0..components {
-        let force = share * d[c];
+        force[c] = share * d[c];
+    }
+    if let Some((of_places, of_velocities)) = along {
+        let (mut apart, mut faster, mut parting) = ([S::zero(); 3], S::zero(), S::zero());
+        for c in 0..components {
+            let (first, second) = (c * stride + i, c * stride + j);
+            apart[c] = of_places[second] - of_places[first];
+            faster +=
+                apart[c] * (v[second] - v[first]) + d[c] * (of_velocities[second] - of_velocities[first]);
+            parting += apart[c] * d[c];
+        }
+        let other = (coefficient * faster - (share + share) * parting) / square;
+        for c in 0..components {
+            force[c] = share * apart[c] + other * d[c];
+        }
+    }
+    for c in 0..components {
+        let force = force[c];
         a[c * stride + i] += force * inverse_mass[i];
         a[c * stride + j] += -force * inverse_mass[j];
     }
 }
 
 #[inline(always)]
-fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) {
+fn kernel<V: Vector8>(
+    force: &Kernel,
+    ((q, v), along): (Moving<'_, Lanes>, Option<Moving<'_, Lanes>>),
+    a: &mut [Lanes],
+    first: bool,
+) {
     let linked = &force.linked;
     let Shape { rows, components } = linked.shape;
     if first {
@@ -203,24 +234,27 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes],
         let stride = rows * WIDTH;
         let (q, v, a) = (as_numbers(q), as_numbers(v), as_numbers_mut(a));
         let inverse_mass = as_numbers(&linked.inverse_mass);
+        let along = along.map(|(q, v)| (as_numbers(q), as_numbers(v)));
+        let moving = ((q, v), along);
         for (at, &(_, ends)) in linked.links.iter().enumerate() {
-            act::<f64>(force.coefficient[at].0[0], ends, (stride, components), inverse_mass, (q, v), a);
+            act::<f64>(force.coefficient[at].0[0], ends, (stride, components), inverse_mass, moving, a);
         }
         return;
     }
     let (q, v, a, inverse_mass) = (V::view(q), V::view(v), V::view_mut(a), V::view(&linked.inverse_mass));
+    let moving = ((q, v), along.map(|(q, v)| (V::view(q), V::view(v))));
     let bodies = rows / linked.blocks.max(1);
     let (dampers, coefficient) = (linked.links.len(), V::view(&force.coefficient));
     for block in 0..linked.blocks {
         for (at, &(_, (i, j))) in linked.links.iter().enumerate() {
             let ends = (block * bodies + i, block * bodies + j);
-            act::<V>(coefficient[block * dampers + at], ends, (rows, components), inverse_mass, (q, v), a);
+            act::<V>(coefficient[block * dampers + at], ends, (rows, components), inverse_mass, moving, a);
         }
     }
 }
 
 tiered! {
-    fn kernel_tier[][](force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+    fn kernel_tier[][](force: &Kernel, of: (Moving<'_, Lanes>, Option<Moving<'_, Lanes>>), a: &mut [Lanes], first: bool) = kernel;
 }
 
 impl Force<Lanes> for Kernel {
@@ -231,10 +265,23 @@ impl Force<Lanes> for Kernel {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        kernel_tier(self, phase.q, phase.v, a, first);
+        kernel_tier(self, ((phase.q, phase.v), None), a, first);
         Ok(())
     }
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
+    }
+}
+
+impl Derivative<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        along: Along<'_, Lanes>,
+        change: &mut [Lanes],
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, ((phase.q, phase.v), Some((along.q, along.v))), change, true);
+        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::derivative::{Derivative, OfLinear};
 use super::series::{ONE, Scale, Series};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -135,6 +136,9 @@ impl ForceTerm for DrivenForce {
         Box::new(self.kernel_turned(context, DoubleDouble::from(0.0)))
     }
 
+    fn derivative(&self, _: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        OfLinear::boxed(None)
+    }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let quarters = [0.0, 1.0, 2.0, 3.0].map(|quarters| {
             let turned = DoubleDouble::new(core::f64::consts::FRAC_PI_2, FRAC_PI_2_REST)

@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::derivative::{Derivative, OfLinear};
 use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
@@ -15,6 +16,7 @@ use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
@@ -78,6 +80,11 @@ impl ForceTerm for Harmonic {
     }
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         beside(other, None, context, || self.pulls(context))
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let pulls = self.pulls(context);
+        let center = pulls.center.map(|lanes| vec![Lanes::zero(); lanes.len()]);
+        OfLinear::boxed(Some(Box::new(Kernel { center, ..pulls })))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let linear = Self { center: [0.0; 3], ..*self };

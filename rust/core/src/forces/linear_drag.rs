@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::derivative::{Derivative, OfLinear};
 use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::linear::{Linear, LinearAcceleration};
@@ -57,6 +58,9 @@ impl ForceTerm for LinearDrag {
     }
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         beside(other, None, context, || self.slowing(context))
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        OfLinear::boxed(Some(self.kernel(context)))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))

@@ -13,6 +13,7 @@ pub mod central_field;
 pub mod context;
 pub mod coulomb;
 pub mod damper;
+pub mod derivative;
 pub mod drag;
 pub mod driven_force;
 pub mod expression;
@@ -22,6 +23,7 @@ pub mod harmonic;
 mod limits;
 pub mod linear;
 pub mod linear_drag;
+mod lines;
 pub mod links;
 pub mod monitor;
 pub mod oblate;
@@ -40,6 +42,7 @@ pub mod uniform_electric_field;
 pub mod uniform_field;
 pub mod uniform_magnetic_field;
 
+pub use limits::check_masses;
 pub use term::{ForceDeclaration, ForceTerm};
 
 use crate::error::Result;

@@ -10,8 +10,10 @@
 use super::approach::{self, Moving};
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context};
+use super::derivative::Derivative;
 use super::gravity::RING_MAX;
 use super::limits::{check_force, outside};
+use super::lines::Between;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
@@ -77,18 +79,24 @@ impl ForceTerm for PairPotential {
                 Way::Shards((0..count).map(|shard| (bound(shard), bound(shard + 1))).collect())
             }
         };
-        let potential = self.potential.scaled(context.units);
-        let numbers = context.potentials(&*potential, |system| &context.own(self, system).potential);
+        let (potential, pairs) = self.pairs(context);
         let length2 = approach::lengths2(context, |system| &context.own(self, system).potential);
         Box::new(Kernel {
             potential,
             length2,
-            pairs: Pairs { shape, blocks: context.blocks(), bodies, numbers },
+            pairs,
             way,
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
             force: vec![Lanes::zero(); shape.len()],
             threads: context.threads,
         })
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let (potential, pairs) = self.pairs(context);
+        let together = context.arrangement == Arrangement::Packed;
+        let is_long = together && context.shape.rows >= LONG_ROWS;
+        let inverse_mass = context.per_body(|system, slot| 1.0 / system.mass[slot]);
+        Some(Between::boxed(potential, pairs, (together, is_long), inverse_mass))
     }
     fn potential_and_virial(
         &self,
@@ -182,6 +190,14 @@ impl ForceTerm for PairPotential {
 }
 
 impl PairPotential {
+    /// What acts between the bodies of a context, in its units.
+    fn pairs(&self, context: &Context<'_>) -> (Arc<dyn Potential>, Pairs) {
+        let potential = self.potential.scaled(context.units);
+        let numbers = context.potentials(&*potential, |system| &context.own(self, system).potential);
+        let bodies = context.first().bodies.len();
+        (potential, Pairs { shape: context.shape, blocks: context.blocks(), bodies, numbers })
+    }
+
     /// Refuses pairs at distances at which the potential is not.
     fn within(&self, view: &Bodies<'_>) -> Result<()> {
         let Some(domain) = self.domain() else { return Ok(()) };

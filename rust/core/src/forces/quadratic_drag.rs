@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, of_body};
+use super::derivative::{Along, Derivative};
 use super::gravity::beside::{Beside, Seen, beside};
 use super::gravity::ring::Turns;
 use super::remaining::{OfRemaining, Remaining};
@@ -79,6 +80,9 @@ impl ForceTerm for QuadraticDrag {
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         Box::new(self.slowing(context))
     }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        Some(Box::new(self.slowing(context)))
+    }
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         beside(other, None, context, || self.slowing(context))
     }
@@ -144,6 +148,27 @@ fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool)
     }
 }
 
+/// −(c/m) (|v| e + (v·e)/|v| v), where velocities change by `e`; at rest nothing.
+#[inline(always)]
+fn change<V: Vector8>(force: &Kernel, [v, along]: [&[Lanes]; 2], into: &mut [Lanes]) {
+    let Shape { rows, components } = force.shape;
+    let (v, along, into, ratio) = (V::view(v), V::view(along), V::view_mut(into), V::view(&force.ratio));
+    for row in 0..rows {
+        let (mut square, mut product) = (V::zero(), V::zero());
+        for c in 0..components {
+            let at = c * rows + row;
+            square = v[at].multiply_add(v[at], square);
+            product = v[at].multiply_add(along[at], product);
+        }
+        let speed = square.sqrt();
+        let share = V::select(speed.less_equal(V::zero()), V::zero(), product / speed);
+        for c in 0..components {
+            let at = c * rows + row;
+            into[at] = ratio[row] * speed.multiply_add(along[at], share * v[at]);
+        }
+    }
+}
+
 impl Beside for Kernel {
     const VELOCITY: bool = true;
 
@@ -163,6 +188,7 @@ impl Beside for Kernel {
 
 tiered! {
     fn kernel_tier[][](force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+    fn change_tier[][](force: &Kernel, of: [&[Lanes]; 2], into: &mut [Lanes]) = change;
 }
 
 impl Force<Lanes> for Kernel {
@@ -181,5 +207,18 @@ impl Force<Lanes> for Kernel {
     }
     fn adds(&self) -> Adds {
         Adds::Once
+    }
+}
+
+impl Derivative<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        along: Along<'_, Lanes>,
+        change: &mut [Lanes],
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        change_tier(self, [phase.v, along.v], change);
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::derivative::{Along, Derivative};
 use super::links::series::{LinkLaw, LinkSeries, Numbers};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::remaining::{OfRemaining, Remaining};
@@ -100,6 +101,21 @@ impl Springs {
     }
 }
 
+/// How the force on the first end changes where the ends, `d` from each other, move apart by `e`.
+#[inline(always)]
+fn change<S: Real>(d: [S; 3], e: [S; 3], k: S, length: Option<S>) -> [S; 3] {
+    let (pull, mut along) = (pull(d, k, length), S::zero());
+    if let Some(length) = length {
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        along = k * length * (d[0] * e[0] + d[1] * e[1] + d[2] * e[2]) / (square * square.sqrt());
+    }
+    let mut change = [S::zero(); 3];
+    for c in 0..3 {
+        change[c] = pull * e[c] + along * d[c];
+    }
+    change
+}
+
 /// How much of the vector from one end to the other is the force on the first.
 #[inline(always)]
 fn pull<S: Real>(d: [S; 3], k: S, length: Option<S>) -> S {
@@ -114,6 +130,9 @@ impl ForceTerm for Springs {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         Box::new(self.acting(context))
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        Some(Box::new(self.acting(context)))
     }
     /// Without lengths springs are linear.
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
@@ -239,30 +258,47 @@ struct Kernel {
     long: Vec<bool>,
 }
 
-/// Adds the pull of a spring to the accelerations of its ends, whose numbers are at these places.
+/// Adds the pull of a spring to the accelerations of its ends, whose numbers are at these places; or what it changes by along
+/// a direction.
 #[inline(always)]
 fn act<S: Real>(
     (k, length): (S, Option<S>),
     (i, j): (usize, usize),
     (stride, components): (usize, usize),
     inverse_mass: &[S],
-    q: &[S],
+    (q, along): (&[S], Option<&[S]>),
     a: &mut [S],
 ) {
-    let mut d = [S::zero(); 3];
+    let mut force = [S::zero(); 3];
     for c in 0..components {
-        d[c] = q[c * stride + j] - q[c * stride + i];
+        force[c] = q[c * stride + j] - q[c * stride + i];
     }
-    let pull = pull(d, k, length);
+    if let Some(along) = along {
+        let mut apart = [S::zero(); 3];
+        for c in 0..components {
+            apart[c] = along[c * stride + j] - along[c * stride + i];
+        }
+        force = change(force, apart, k, length);
+    } else {
+        let pull = pull(force, k, length);
+        for c in 0..components {
+            force[c] = pull * force[c];
+        }
+    }
     for c in 0..components {
-        let force = pull * d[c];
+        let force = force[c];
         a[c * stride + i] += force * inverse_mass[i];
         a[c * stride + j] += -force * inverse_mass[j];
     }
 }
 
 #[inline(always)]
-fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool) {
+fn kernel<V: Vector8>(
+    force: &Kernel,
+    (q, along): (&[Lanes], Option<&[Lanes]>),
+    a: &mut [Lanes],
+    first: bool,
+) {
     let Shape { rows, components } = force.linked.shape;
     if first {
         a.fill(Lanes::zero());
@@ -270,13 +306,15 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool)
     if force.linked.packed {
         let stride = rows * WIDTH;
         let (q, a, inverse_mass) = (as_numbers(q), as_numbers_mut(a), as_numbers(&force.linked.inverse_mass));
+        let along = along.map(as_numbers);
         for (at, &(_, ends)) in force.linked.links.iter().enumerate() {
             let spring = (force.k[at].0[0], force.long[at].then_some(force.length[at].0[0]));
-            act::<f64>(spring, ends, (stride, components), inverse_mass, q, a);
+            act::<f64>(spring, ends, (stride, components), inverse_mass, (q, along), a);
         }
         return;
     }
     let (q, a, inverse_mass) = (V::view(q), V::view_mut(a), V::view(&force.linked.inverse_mass));
+    let along = along.map(V::view);
     let bodies = rows / force.linked.blocks.max(1);
     let springs = force.linked.links.len();
     let (k, length) = (V::view(&force.k), V::view(&force.length));
@@ -285,13 +323,13 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool)
             let ends = (block * bodies + i, block * bodies + j);
             let own = block * springs + at;
             let spring = (k[own], force.long[at].then_some(length[own]));
-            act::<V>(spring, ends, (rows, components), inverse_mass, q, a);
+            act::<V>(spring, ends, (rows, components), inverse_mass, (q, along), a);
         }
     }
 }
 
 tiered! {
-    fn kernel_tier[][](force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+    fn kernel_tier[][](force: &Kernel, of: (&[Lanes], Option<&[Lanes]>), a: &mut [Lanes], first: bool) = kernel;
 }
 
 impl Force<Lanes> for Kernel {
@@ -302,7 +340,20 @@ impl Force<Lanes> for Kernel {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        kernel_tier(self, phase.q, a, first);
+        kernel_tier(self, (phase.q, None), a, first);
+        Ok(())
+    }
+}
+
+impl Derivative<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        along: Along<'_, Lanes>,
+        change: &mut [Lanes],
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, (phase.q, Some(along.q)), change, true);
         Ok(())
     }
 }

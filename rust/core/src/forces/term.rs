@@ -7,6 +7,7 @@
 use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
+use super::derivative::Derivative;
 use super::driven_force::Drive;
 use super::following::{Following, Leaders};
 use super::linear::Linear;
@@ -20,7 +21,6 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::Declaration;
 use crate::units::Units;
-use crate::words::number;
 use core::any::Any;
 use core::fmt::Debug;
 
@@ -150,7 +150,13 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         None
     }
 
-    /// The same for a method of Taylor series, if the force [has](Self::has_series) one.
+    /// How its accelerations change along a direction, by formulas, if it knows that: of every copy of one kind of force, or of
+    /// none ([`Self::in_every_lane`]).
+    fn derivative(&self, _: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        None
+    }
+
+    /// The kernel for a method of Taylor series, if the force [has](Self::has_series) one.
     fn series(&self, _: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         None
     }
@@ -373,26 +379,5 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     /// The field and the charges, if it is that of a uniform magnetic field.
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         None
-    }
-}
-
-/// Refuses a massless body on which a force acts that moves only what has mass.
-///
-/// # Errors
-/// By name.
-pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
-    let massless = |&(index, &mass): &(usize, &f64)| mass == 0.0 && term.needs_mass(index % bodies.particles);
-    match bodies.mass.iter().enumerate().find(massless) {
-        None => Ok(()),
-        Some((index, &mass)) => Err(Error::invalid(
-            "mass",
-            format!(
-                "{} acts by its force, so every mass must be positive, got {} = {}; give a mass of 1 for the force on \
-                 each unit of mass, or where masses attract others write it as ExpressionForce(acceleration=…)",
-                term.declaration().class_name,
-                bodies.name("mass", index),
-                number(mass)
-            ),
-        )),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, joined, vector_sum};
 use super::context::{Context, System};
+use super::derivative::{Derivative, OfLinear};
 use super::linear::{Linear, LinearAcceleration};
 use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
@@ -49,6 +50,9 @@ impl ForceTerm for Uniform {
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).g[c], ACCELERATION);
         let acceleration = (0..3).flat_map(|c| context.per_body(|system, _| g(system, c)));
         Box::new(Kernel { acceleration: acceleration.collect() })
+    }
+    fn derivative(&self, _: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        OfLinear::boxed(None)
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), None)

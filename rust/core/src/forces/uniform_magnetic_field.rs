@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
+use super::derivative::{Derivative, OfLinear};
 use super::linear::{Linear, LinearAcceleration};
 use super::remaining::{OfRemaining, Remaining};
 use super::series::{LinearSeries, Series};
@@ -98,6 +99,9 @@ impl ForceTerm for UniformMagneticField {
         let size = context.per_system(size);
         let field = [0, 1, 2].map(|c| context.per_system(|system| field(system)[c]));
         Box::new(Kernel { shape: context.shape, field, size, axis, ratio, turns: Vec::new() })
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        OfLinear::boxed(Some(self.kernel(context)))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))

@@ -45,6 +45,22 @@ fn all_rows<V: Vector8 + Analytic, P: Formula>(
     }
 }
 
+/// As [`all_rows`] without V, of the numbers of the potential of each lane.
+#[inline(always)]
+fn force_and_curvature<V: Vector8 + Analytic, P: Formula>(
+    potential: &P,
+    numbers: &Numbers<Lanes>,
+    r: &[Lanes],
+    into: [&mut [Lanes]; 2],
+) {
+    let own = &load::<V>(numbers);
+    let [force, curvature] = into;
+    let (r, force, curvature) = (V::view(r), V::view_mut(force), V::view_mut(curvature));
+    for row in 0..r.len() {
+        [_, force[row], curvature[row]] = potential.all(own, r[row]);
+    }
+}
+
 /// The potential's own numbers in every lane.
 #[inline(always)]
 fn splat<V: Vector8, P: Formula>(potential: &P) -> Numbers<V> {
@@ -59,6 +75,7 @@ tiered! {
     pub(super) fn value_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], value: &mut [Lanes]) = value_rows;
     pub(super) fn force_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], force: &mut [Lanes]) = force_rows;
     pub(super) fn all_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], value: &mut [Lanes], force: &mut [Lanes], curvature: &mut [Lanes]) = all_rows;
+    pub(super) fn force_and_curvature_tier[P: Formula][P](potential: &P, numbers: &Numbers<Lanes>, r: &[Lanes], into: [&mut [Lanes]; 2]) = force_and_curvature;
 }
 
 /// Bodies around a fixed point.

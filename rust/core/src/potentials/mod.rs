@@ -43,7 +43,7 @@ use crate::units::Units;
 use core::fmt::Debug;
 use features::Hidden;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
-use kernels::{all_rows_tier, force_rows_tier, value_rows_tier};
+use kernels::{all_rows_tier, force_and_curvature_tier, force_rows_tier, value_rows_tier};
 use parameters::{Declaration, Value};
 use std::sync::Arc;
 
@@ -160,6 +160,14 @@ pub trait Potential: Debug + Send + Sync {
     fn force_rows(&self, r: &[Lanes], force: &mut [Lanes]);
     /// V(r), −dV/dr and d²V/dr² of rows of distances; of the last, only as many as there is room for.
     fn all_rows(&self, r: &[Lanes], value: &mut [Lanes], force: &mut [Lanes], curvature: &mut [Lanes]);
+    /// −dV/dr and d²V/dr² of rows of distances, of the potentials in the lanes that have these numbers.
+    fn force_and_curvature(
+        &self,
+        numbers: &Numbers<Lanes>,
+        r: &[Lanes],
+        force: &mut [Lanes],
+        curvature: &mut [Lanes],
+    );
     /// As [`evaluate`](Self::evaluate), at one distance.
     fn at(&self, r: f64) -> [f64; 3];
     /// A length of its own, if it has one: the first of its parameters that is one, or where something happens.
@@ -254,6 +262,15 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn all_rows(&self, r: &[Lanes], value: &mut [Lanes], force: &mut [Lanes], curvature: &mut [Lanes]) {
         all_rows_tier(&self.formula, r, value, force, curvature);
+    }
+    fn force_and_curvature(
+        &self,
+        numbers: &Numbers<Lanes>,
+        r: &[Lanes],
+        force: &mut [Lanes],
+        curvature: &mut [Lanes],
+    ) {
+        force_and_curvature_tier(&self.formula, numbers, r, [force, curvature]);
     }
     fn at(&self, r: f64) -> [f64; 3] {
         self.formula.all(&self.formula.numbers(), r)

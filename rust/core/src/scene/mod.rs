@@ -19,8 +19,8 @@ pub mod run;
 pub mod unit;
 
 use crate::error::{Error, Result};
-use crate::forces::ForceTerm;
-use crate::forces::term::{Bodies, check_masses};
+use crate::forces::term::Bodies;
+use crate::forces::{ForceTerm, check_masses};
 use crate::numerics::double_double::DoubleDouble;
 pub(crate) use crate::numerics::points::distance;
 use crate::rigid::motion::bodies::RigidBodies;

@@ -3,9 +3,10 @@
 use super::unseen::Unseen;
 use super::{ExpressionForce, Gives, VARIABLES};
 use crate::error::Result;
-use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
+use crate::expressions::{Code, Machine};
 use crate::forces::context::Context;
+use crate::forces::derivative::{Along, Derivative};
 use crate::forces::{Adds, Force, Phase};
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
@@ -14,6 +15,7 @@ use crate::numerics::real::Real;
 use crate::ode::system::{Needs, Taken};
 use crate::parallel::Ticker;
 use crate::tiered;
+use std::sync::Arc;
 
 /// The way from the units and axes of the integration to those of the expressions, and back.
 #[derive(Clone, Debug)]
@@ -58,20 +60,33 @@ impl Way {
 
 /// An expression at work.
 pub(super) struct Kernel {
+    at_work: AtWork,
+    unseen: Option<Unseen>,
+}
+
+/// Codes beside bodies in lanes.
+struct AtWork {
     way: Way,
     /// One for each block of systems, with their parameters.
     machines: Vec<Machine<Lanes>>,
     needs: Needs,
-    unseen: Option<Unseen>,
 }
 
-impl Kernel {
-    pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Self {
-        let machine = |parameters: Vec<Lanes>| Machine::new(term.expressions.force.clone(), &parameters);
+impl AtWork {
+    fn new(term: &ExpressionForce, code: &Arc<Code>, context: &Context<'_>) -> Self {
+        let machine = |parameters: Vec<Lanes>| Machine::new(code.clone(), &parameters);
         Self {
             way: Way::new(term, context),
             machines: parameters(term, context).into_iter().map(machine).collect(),
             needs: term.expressions.needs,
+        }
+    }
+}
+
+impl Kernel {
+    pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Self {
+        Self {
+            at_work: AtWork::new(term, &term.expressions.force, context),
             unseen: Unseen::new(term, context),
         }
     }
@@ -99,14 +114,31 @@ pub(super) fn turned<V: Real>(axes: &Option<[[f64; 3]; 3]>, x: [V; 3], back: boo
     found
 }
 
+/// Lays a place, or a velocity, of a row of bodies into registers.
 #[inline(always)]
-fn apply_body<V: Vector8 + Scalar>(
-    kernel: &mut Kernel,
+fn lay<V: Vector8>(
+    way: &Way,
+    (numbers, row): (&[V], usize),
+    (unit, origin): (f64, [f64; 3]),
+    registers: &mut [V],
+) {
+    let mut own = [V::zero(); 3];
+    for c in 0..way.shape.components {
+        own[c] = V::splat(unit).multiply_add(numbers[c * way.shape.rows + row], V::splat(-origin[c]));
+    }
+    registers.copy_from_slice(&turned(&way.axes, own, false));
+}
+
+/// Runs the code of each row of bodies; beside places and velocities those of a direction, if there is one.
+#[inline(always)]
+fn run<V: Vector8 + Scalar>(
+    at_work: &mut AtWork,
     phase: &Phase<'_, Lanes>,
+    along: Option<Along<'_, Lanes>>,
     a: &mut [Lanes],
     first: bool,
 ) {
-    let Kernel { way, machines, needs, .. } = kernel;
+    let AtWork { way, machines, needs } = at_work;
     let rows = way.shape.rows;
     let of_block = rows / machines.len();
     let (q, v, a) = (V::view(phase.q), V::view(phase.v), V::view_mut(a));
@@ -115,20 +147,21 @@ fn apply_body<V: Vector8 + Scalar>(
         let (code, registers) = machines[row / of_block].parts();
         let outputs = code.output_registers();
         let registers = V::view_mut(registers);
-        let mut place = [V::zero(); 3];
-        for c in 0..way.shape.components {
-            let origin = V::splat(-way.origin[c]);
-            place[c] = V::splat(way.place).multiply_add(q[c * rows + row], origin);
-        }
-        registers[..3].copy_from_slice(&turned(&way.axes, place, false));
+        lay(way, (q, row), (way.place, way.origin), &mut registers[..3]);
         if needs.velocity {
-            let mut speed = [V::zero(); 3];
-            for c in 0..way.shape.components {
-                speed[c] = V::splat(way.velocity) * v[c * rows + row];
-            }
-            registers[3..VARIABLES].copy_from_slice(&turned(&way.axes, speed, false));
+            lay(way, (v, row), (way.velocity, [0.0; 3]), &mut registers[3..VARIABLES]);
         }
-        registers[VARIABLES] = t;
+        let mut inputs = VARIABLES;
+        if let Some(along) = along {
+            let (of_places, of_velocities) = (V::view(along.q), V::view(along.v));
+            lay(way, (of_places, row), (way.place, [0.0; 3]), &mut registers[inputs..inputs + 3]);
+            if needs.velocity {
+                let own = &mut registers[inputs + 3..inputs + VARIABLES];
+                lay(way, (of_velocities, row), (way.velocity, [0.0; 3]), own);
+            }
+            inputs += VARIABLES;
+        }
+        registers[inputs] = t;
         execute::execute::<V, 1>(code, Part::Body, registers);
         let mut force = [V::zero(); 3];
         for c in 0..3 {
@@ -147,7 +180,30 @@ fn apply_body<V: Vector8 + Scalar>(
 }
 
 tiered! {
-    fn apply_tier[][](kernel: &mut Kernel, phase: &Phase<'_, Lanes>, a: &mut [Lanes], first: bool) = apply_body;
+    fn run_tier[][](at_work: &mut AtWork, phase: &Phase<'_, Lanes>, along: Option<Along<'_, Lanes>>, a: &mut [Lanes], first: bool) = run;
+}
+
+/// How an expression changes along a direction.
+pub(super) struct Change(AtWork);
+
+impl Change {
+    /// By the code of that.
+    pub(super) fn new(term: &ExpressionForce, code: &Arc<Code>, context: &Context<'_>) -> Self {
+        Self(AtWork::new(term, code, context))
+    }
+}
+
+impl Derivative<Lanes> for Change {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        along: Along<'_, Lanes>,
+        change: &mut [Lanes],
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        run_tier(&mut self.0, phase, Some(along), change, true);
+        Ok(())
+    }
 }
 
 impl Force<Lanes> for Kernel {
@@ -158,11 +214,11 @@ impl Force<Lanes> for Kernel {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        apply_tier(self, phase, a, first);
+        run_tier(&mut self.at_work, phase, None, a, first);
         Ok(())
     }
     fn needs(&self) -> Needs {
-        self.needs
+        self.at_work.needs
     }
     fn adds(&self) -> Adds {
         Adds::Once

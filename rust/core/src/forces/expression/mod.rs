@@ -12,6 +12,7 @@ mod unseen;
 use super::Force;
 use super::bodies::{Of, PreciseBodies};
 use super::context::Context;
+use super::derivative::Derivative;
 use super::remaining::{OfRemaining, Remaining};
 use super::series::Series;
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
@@ -28,8 +29,8 @@ use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use crate::units::{Dimension, Units};
 use crate::words::number;
 use expanded::Expanded;
-use kernel::Kernel;
-use std::sync::Arc;
+use kernel::{Change, Kernel};
+use std::sync::{Arc, OnceLock};
 
 /// Numbers that expressions are of: a place and a velocity.
 const VARIABLES: usize = 6;
@@ -156,6 +157,8 @@ struct Expressions {
     narrow: Option<Arc<Features>>,
     /// What they were made from, but for the parameters.
     made_from: Vec<u64>,
+    /// How the force changes along a direction, if that is known, once somebody has asked.
+    change: OnceLock<Option<Arc<Code>>>,
 }
 
 /// What leads from a scene to the coordinates of the expressions.
@@ -221,6 +224,12 @@ impl ForceTerm for ExpressionForce {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         Box::new(Kernel::new(self, context))
+    }
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let expressions = &self.expressions;
+        let change =
+            expressions.change.get_or_init(|| compiled::change(self.gives, expressions).map(Arc::new));
+        Some(Box::new(Change::new(self, change.as_ref()?, context)))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         Some(Box::new(Expanded::new(self, context)?))

@@ -14,6 +14,7 @@
 
 pub(super) mod beside;
 pub mod closed;
+pub mod derivative;
 pub mod energy;
 pub mod few;
 mod many;

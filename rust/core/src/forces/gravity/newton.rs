@@ -1,11 +1,12 @@
 //! Newton's law between all pairs: what a scene describes.
 
 use super::passive::Leading;
-use super::{FewBodies, ManyBodies, RING_MAX, Ring, Tiles, TwoRows, energy, series};
+use super::{FewBodies, ManyBodies, RING_MAX, Ring, Tiles, TwoRows, derivative, energy, series};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
 use crate::forces::context::{Arrangement, Context, System};
+use crate::forces::derivative::Derivative;
 use crate::forces::following::{Following, Leaders};
 use crate::forces::series::Series;
 use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
@@ -52,6 +53,11 @@ impl Gravity {
     /// From the gravitational constant and the softening length.
     pub fn new(constant: f64, softening: f64) -> Self {
         Self { constant, softening }
+    }
+
+    /// `G·m` of a body of a system.
+    fn strength<'s>(&'s self, context: &'s Context<'_>) -> impl Fn(&System<'_>, usize) -> f64 + 's {
+        |system, slot| context.units.take(context.own(self, system).constant, CONSTANT) * system.mass[slot]
     }
 }
 
@@ -115,10 +121,12 @@ impl ForceTerm for Gravity {
     }
 
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let strength = |system: &System<'_>, slot: usize| {
-            context.units.take(context.own(self, system).constant, CONSTANT) * system.mass[slot]
-        };
-        attraction(context, strength, |system| context.own(self, system).softening)
+        attraction(context, self.strength(context), |system| context.own(self, system).softening)
+    }
+
+    fn derivative(&self, context: &Context<'_>) -> Option<Box<dyn Derivative<Lanes>>> {
+        let softening = |system: &System<'_>| context.own(self, system).softening;
+        Some(derivative::attraction(context, self.strength(context), softening))
     }
 
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {

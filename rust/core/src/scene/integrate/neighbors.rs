@@ -5,6 +5,8 @@
 
 mod choosing;
 mod equal;
+mod measures;
+mod slopes;
 mod variation;
 
 use super::super::frame::Units;
@@ -20,13 +22,14 @@ use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 use crate::parallel::{Ticker, for_chunks};
 use core::f64::consts::LN_2;
-use variation::{Size, Variation};
+use measures::Size;
+use variation::Variation;
 
 /// Between which powers of two the length of a difference may be.
 const WIDEST: i32 = 128;
 /// What a step may be off in a difference, as a part of it: more than rounding of a derivative in a deep encounter, …
 const OF_DIFFERENCES: f64 = 1e-5;
-/// … and no less than this, which is rounding elsewhere, where it is asked what becomes of it.
+/// … and no less than this, which is rounding of differences of forces elsewhere, where it is asked what becomes of it.
 const ROUNDED: f64 = 1e-9;
 
 /// What became of a unit and its neighbor.
@@ -170,7 +173,11 @@ impl<'a> Group<'a> {
         });
         let running = (0..units.len()).fold(Bits(0), |lanes, lane| lanes.or(layout.mask(lane)));
         let followed = followed.collect();
-        let accuracy = if is_followed { Real::max(job.rtol, ROUNDED) } else { OF_DIFFERENCES };
+        let accuracy = match (is_followed, variation.is_exact()) {
+            (true, true) => job.rtol,
+            (true, false) => Real::max(job.rtol, ROUNDED),
+            (false, _) => OF_DIFFERENCES,
+        };
         let (gained, raised) = ([0.0; WIDTH], [0; WIDTH]);
         let mut group =
             Self { job, units, layout, variation, state, gained, raised, accuracy, followed, running };
@@ -190,7 +197,7 @@ impl<'a> Group<'a> {
     /// The lengths of the differences in a state.
     fn length(&self, state: &State<Lanes>) -> Lanes {
         let half = self.variation.half();
-        self.variation.length(&state.q()[half..], &state.v()[half..])
+        self.variation.measures.length(&state.q()[half..], &state.v()[half..])
     }
 
     /// Takes down what differences have become at an output time, in some lanes: in the present state, or in another one.

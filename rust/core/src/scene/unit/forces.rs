@@ -2,6 +2,7 @@
 
 use super::{Layout, Plan, Prepared};
 use crate::forces::context::{Arrangement, Context, System};
+use crate::forces::derivative::Derivative;
 use crate::forces::gravity::newton::few_bodies;
 use crate::forces::monitor::InverseDistances;
 use crate::forces::series::Series;
@@ -67,24 +68,50 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
     described(&systems).map(kernel).collect()
 }
 
-/// The forces on `units` of the same make-up: one if packed, up to eight for each block of rows if batched.
-pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<Lanes> {
-    let shape = units[0].state_shape(units.len());
-    let systems = systems(plan, units);
-    let mut context = Context {
+/// What kernels for units of the same make-up are made for.
+fn context<'a>(plan: &Plan, units: &[&Prepared], systems: &'a [System<'a>], threads: usize) -> Context<'a> {
+    Context {
         arrangement: match units[0].layout {
             Layout::Packed => Arrangement::Packed,
             Layout::Batched => Arrangement::Batched,
         },
-        shape,
+        shape: units[0].state_shape(units.len()),
         active: units[0].unit.active,
-        systems: &systems,
+        systems,
         term: 0,
         units: plan.units,
         t0: plan.t0,
         threads,
         equal_steps: !plan.method.adaptive(),
-    };
+    }
+}
+
+/// How the forces on `units` change along a direction, and the forces that do not know it, if there are any.
+pub fn derivatives(
+    plan: &Plan,
+    units: &[&Prepared],
+    threads: usize,
+) -> (Vec<Box<dyn Derivative<Lanes>>>, Option<Dynamics<Lanes>>) {
+    let systems = systems(plan, units);
+    let mut context = context(plan, units, &systems, threads);
+    let (mut known, mut others) = (Vec::new(), Vec::new());
+    for (term, force) in described(&systems) {
+        if units.iter().any(|unit| plan.acts_on(term, &unit.unit.bodies)) {
+            context.term = term;
+            match force.derivative(&context) {
+                Some(derivative) => known.push(derivative),
+                None => others.push(force.kernel(&context)),
+            }
+        }
+    }
+    let others = (!others.is_empty()).then(|| Dynamics::new(context.shape, others));
+    (known, others)
+}
+
+/// The forces on `units` of the same make-up: one if packed, up to eight for each block of rows if batched.
+pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<Lanes> {
+    let systems = systems(plan, units);
+    let mut context = context(plan, units, &systems, threads);
     if let (true, Some(few)) = (plan.relative, few_bodies(&context)) {
         return Dynamics::closed(few);
     }
@@ -106,7 +133,7 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         context.term = term;
         kernels.push(force.kernel(&context));
     }
-    let dynamics = Dynamics::new(shape, kernels);
+    let dynamics = Dynamics::new(context.shape, kernels);
     if matches!(plan.method.scheme, Scheme::Taylor(_)) {
         let mut all = Vec::with_capacity(forces.len());
         for (term, force) in forces.iter().enumerate() {

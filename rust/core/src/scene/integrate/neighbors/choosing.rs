@@ -91,7 +91,7 @@ impl Group<'_> {
     /// Allows differences a part of what they are now.
     fn allow(&self, norm: &mut Norm<Lanes>) {
         let allowed = Lanes::splat(self.accuracy) * self.length(&self.state);
-        for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.sizes()) {
+        for (block, size) in norm.blocks[2..].iter_mut().zip(self.variation.measures.sizes()) {
             block.atol[0] = allowed * size;
         }
     }
