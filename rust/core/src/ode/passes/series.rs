@@ -211,6 +211,48 @@ fn product<V: Real>(a: V, b: V) -> (V, V) {
     (product, a.multiply_add(b, -product))
 }
 
+/// The nested terms, as of [`nest`], of all numbers, from coefficients of the time since an expansion.
+pub(in crate::ode) struct Nested<'a, S> {
+    /// Blocks of coefficients, from order 0 on, which is left out.
+    pub(in crate::ode) blocks: &'a [S],
+    /// The step that was tried, that of which they are to be, and the unit of the coefficients.
+    pub(in crate::ode) times: [&'a S; 3],
+    /// Numbers of a block.
+    pub(in crate::ode) len: usize,
+    /// Blocks of terms.
+    pub(in crate::ode) into: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for Nested<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let Self { blocks, times: [tried, h, unit], len, into } = self;
+        let (blocks, into, unit) = (V::view(blocks), V::view_mut(into), V::load(*unit));
+        let (ratio, mut power) = (V::load(*tried) / unit, V::load(*h) / unit);
+        for (into, block) in into.chunks_exact_mut(len).zip(blocks[len..].chunks_exact(len)) {
+            for (into, coefficient) in into.iter_mut().zip(block) {
+                *into = *coefficient * power;
+            }
+            power = power * ratio;
+        }
+        let (mut start, terms) = (0, into.len() / len);
+        while start < terms {
+            // As in `nest`, number after number of a block.
+            for index in (start + 1..terms).rev() {
+                let (before, after) = into.split_at_mut(index * len);
+                for (before, after) in before[(index - 1) * len..].iter_mut().zip(&after[..len]) {
+                    *before += *after;
+                }
+            }
+            for later in &mut into[(start + 1) * len..] {
+                *later = -*later;
+            }
+            start += 2;
+        }
+    }
+}
+
 /// The nested terms `f` of `y(θ) = y + θ(f0 + (1-θ)(f1 + θ(f2 + …)))` from the coefficients of θ, θ², …, in place.
 pub(in crate::ode) fn nest<S: Real>(coefficients: &mut [S]) {
     for start in (0..coefficients.len()).step_by(2) {
