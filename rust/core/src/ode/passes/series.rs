@@ -236,20 +236,35 @@ impl<S: Element> Pass<S> for Nested<'_, S> {
             }
             power = power * ratio;
         }
-        let (mut start, terms) = (0, into.len() / len);
-        while start < terms {
-            // As in `nest`, number after number of a block.
-            for index in (start + 1..terms).rev() {
-                let (before, after) = into.split_at_mut(index * len);
-                for (before, after) in before[(index - 1) * len..].iter_mut().zip(&after[..len]) {
-                    *before += *after;
-                }
-            }
-            for later in &mut into[(start + 1) * len..] {
-                *later = -*later;
-            }
-            start += 2;
+        let mut start = 0;
+        while len - start >= 3 {
+            nest_numbers::<V, 3>(into, (len, start));
+            start += 3;
         }
+        while len > start {
+            nest_numbers::<V, 1>(into, (len, start));
+            start += 1;
+        }
+    }
+}
+
+/// As [`nest`], of `G` numbers of blocks from one on.
+#[inline(always)]
+fn nest_numbers<V: Real, const G: usize>(blocks: &mut [V], (len, start): (usize, usize)) {
+    let terms = blocks.len() / len;
+    let mut first = 0;
+    while first + 1 < terms {
+        let mut sums = [V::zero(); G];
+        sums.copy_from_slice(&blocks[(terms - 1) * len + start..][..G]);
+        for index in (first..terms - 1).rev() {
+            let (before, after) = blocks[index * len + start..].split_at_mut(len);
+            for g in 0..G {
+                after[g] = -sums[g];
+                sums[g] = before[g] + sums[g];
+            }
+        }
+        blocks[first * len + start..][..G].copy_from_slice(&sums);
+        first += 2;
     }
 }
 
