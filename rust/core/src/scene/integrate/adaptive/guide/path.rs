@@ -19,14 +19,6 @@ pub(super) struct Packed {
     pub(super) rows: usize,
 }
 
-impl Packed {
-    /// Where the number `i` is that would be at `i` if each body had all lanes.
-    #[inline(always)]
-    pub(super) fn place(self, i: usize) -> usize {
-        i / self.bodies * (self.rows * WIDTH) + i % self.bodies
-    }
-}
-
 /// The time of all these lanes, if it is one.
 pub(super) fn one_time(t: &Lanes, lanes: Bits) -> Option<f64> {
     let first = t.0[lanes.0.trailing_zeros() as usize % WIDTH];
@@ -45,6 +37,8 @@ pub(in super::super) struct Path {
     moving: bool,
     /// How bodies lie in blocks, if they are packed.
     packed: Option<Packed>,
+    /// Where each of their numbers is in a block.
+    places: Vec<usize>,
     /// A block of numbers for `q`, one for `e` and one for each `f`.
     blocks: Vec<Lanes>,
     /// The same as series, of a method that has them.
@@ -95,6 +89,10 @@ impl Path {
         let components = unit.shape.components;
         (self.h, self.moving, self.numbers) = (h, moving, unit.unit.active * components);
         self.packed = packed.then(|| Packed { bodies: unit.unit.active, rows: q.len() / components });
+        if let Some(Packed { bodies, rows }) = self.packed.filter(|_| self.places.len() != self.numbers) {
+            let component = |c: usize| (0..bodies).map(move |body| c * rows * WIDTH + body);
+            self.places = (0..components).flat_map(component).collect();
+        }
         match trial.series() {
             Some(jet) => self.coefficients.get_or_insert_default().take_up(jet, self.packed),
             None => self.coefficients = None,
@@ -115,29 +113,30 @@ impl Path {
     /// Writes where the bodies are at the time `t` since the start of the step in these lanes, and then how they move if that is
     /// asked for: the derivative of the same polynomial.
     pub(super) fn at(&self, t: &Lanes, lanes: Bits, into: &mut [Lanes]) {
-        match one_time(t, lanes) {
-            Some(time) if self.packed.is_some() => self.at_one(&Lanes::splat(time), true, into),
-            _ => self.at_one(t, false, into),
-        }
+        let one = self.packed.and_then(|_| one_time(t, lanes)).map(Lanes::splat);
+        self.at_times((one.as_ref().unwrap_or(t), one.is_some()), into);
     }
 
-    fn at_one(&self, t: &Lanes, one: bool, into: &mut [Lanes]) {
+    fn at_times(&self, (t, one): (&Lanes, bool), into: &mut [Lanes]) {
         Lanes::pass(At { path: self, t, one, into });
     }
 
     /// Where the bodies are at a stage of a step as long as this one, if `t` is the time of one in these lanes: most massless
     /// bodies take such a step, and all that do ask for the same places.
     pub(super) fn at_stage(&self, t: &Lanes, lanes: Bits) -> Option<&[Lanes]> {
+        let one = self.packed.is_some();
         let is_then = |time: &Lanes| (0..WIDTH).all(|lane| time.0[lane] == t.0[lane] || !lanes.lane(lane));
-        // Packed, all lanes of a time are one.
-        let first = lanes.0.trailing_zeros() as usize % WIDTH;
-        let may_be = |time: &Lanes| time.0[first] == t.0[first];
-        let (_, places) = self.stages.iter().find(|(time, _)| may_be(time) && is_then(time))?;
+        // Packed, a stage is at one time.
+        let asked = if one && !self.stages.is_empty() { Some(one_time(t, lanes)?) } else { None };
+        let (time, places) = self
+            .stages
+            .iter()
+            .find(|(time, _)| asked.map_or_else(|| is_then(time), |asked| time.0[0] == asked))?;
         Some(places.get_or_init(|| {
             let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
             let mut places = spare.unwrap_or_default();
             places.resize(self.told(), Lanes::zero());
-            self.at(t, lanes, &mut places);
+            self.at_times((time, one), &mut places);
             places
         }))
     }
@@ -161,18 +160,23 @@ impl Pass<Lanes> for At<'_> {
 
 #[inline(always)]
 fn along<V: View<Lanes>, const MOVING: bool>(At { path, t, one, into }: At<'_>) {
-    let Path { numbers, blocks, h, packed, .. } = path;
+    let Path { numbers, blocks, h, packed, places, .. } = path;
     let times = (V::load(*t) / V::load(*h), V::one() / V::load(*h));
     let into = V::view_mut(into);
     match *packed {
         Some(packed) if one => {
             let len = *numbers / packed.bodies * packed.rows;
             let from = AsTheyLie { blocks: V::view(blocks), len };
-            groups::<V, _, MOVING>(&from, len, times, &mut ToAll { packed, numbers: *numbers, into });
+            groups::<V, _, MOVING>(
+                &from,
+                len,
+                times,
+                &mut ToAll { packed, numbers: *numbers, into, row: 0, start: 0 },
+            );
         }
         Some(packed) => {
             let len = *numbers / packed.bodies * packed.rows * WIDTH;
-            let from = Spread { numbers: as_numbers(blocks), packed, len };
+            let from = Spread { numbers: as_numbers(blocks), places, len };
             groups::<V, _, MOVING>(&from, *numbers, times, &mut InPlace { numbers: *numbers, into });
         }
         None => {
@@ -213,7 +217,7 @@ impl<V: Copy> Source<V> for AsTheyLie<'_, V> {
 /// Those of packed bodies, each in all lanes.
 struct Spread<'a> {
     numbers: &'a [f64],
-    packed: Packed,
+    places: &'a [usize],
     len: usize,
 }
 
@@ -224,7 +228,7 @@ impl<V: Real> Source<V> for Spread<'_> {
     }
     #[inline(always)]
     fn place(&self, i: usize) -> usize {
-        self.packed.place(i)
+        self.places[i]
     }
     #[inline(always)]
     fn read(&self, block: usize, place: usize) -> V {
@@ -252,23 +256,29 @@ impl<V: Copy> Target<V> for InPlace<'_, V> {
     }
 }
 
-/// Of rows of packed bodies each goes to all lanes.
+/// Of rows of packed bodies, one after another, each body goes to all lanes.
 struct ToAll<'a, V> {
     packed: Packed,
     numbers: usize,
     into: &'a mut [V],
+    /// The next row, and where its component begins.
+    row: usize,
+    start: usize,
 }
 
 impl<V: View<Lanes>> Target<V> for ToAll<'_, V> {
     #[inline(always)]
-    fn put(&mut self, i: usize, place: V, rate: Option<V>) {
+    fn put(&mut self, _: usize, place: V, rate: Option<V>) {
         let Packed { bodies, rows } = self.packed;
-        let first = i % rows * WIDTH;
-        let count = (bodies - first).min(WIDTH);
-        let start = i / rows * bodies + first;
-        spread(place, &mut self.into[start..][..count]);
+        let first = self.row * WIDTH;
+        let (at, count) = (self.start + first, (bodies - first).min(WIDTH));
+        spread(place, &mut self.into[at..][..count]);
         if let Some(rate) = rate {
-            spread(rate, &mut self.into[self.numbers + start..][..count]);
+            spread(rate, &mut self.into[self.numbers + at..][..count]);
+        }
+        self.row += 1;
+        if self.row == rows {
+            (self.row, self.start) = (0, self.start + bodies);
         }
     }
 }

@@ -263,7 +263,7 @@ impl<V: Real> Division<'_, V> {
 /// Whether massive bodies in lanes, for one massless body after another, are quicker than massless bodies in lanes for one massive
 /// body after another.
 fn is_quicker(massless: usize, Packed { bodies, rows }: Packed) -> bool {
-    (1..=FewMassless::MOST).contains(&massless) && 2 * massless * rows <= bodies + 1
+    bodies > 1 && (1..=FewMassless::MOST).contains(&massless) && 2 * massless * rows <= bodies + 1
 }
 
 impl Guided {
