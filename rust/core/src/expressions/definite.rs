@@ -10,6 +10,8 @@ use super::graph::{Dependence, Graph, Id, Node, number};
 /// Nothing grows with a higher power of the places, nor, with another, what is divided by: steep walls are seen too late.
 const STEEPEST: f64 = 4.0;
 const STEEPEST_FALL: f64 = 6.0;
+/// What is divided by and grows so has a narrow crest.
+const STEEP_FALL: f64 = 2.0;
 /// With more of what may vanish the products of a series take longer than shorter steps.
 const MOST: usize = 20;
 /// Places among the numbers of a state.
@@ -39,11 +41,14 @@ pub fn is_definite(graph: &Graph, roots: &[Id], parameters: &[f64]) -> bool {
     let known = known(graph, parameters);
     let of = |id: Id| known[id as usize];
     let nodes = graph.reachable(roots);
-    let place = |id: &Id| match graph.node(*id) {
-        Node::Variable(index) if *index < PLACES => 1 << index,
-        _ => 0,
+    let places_in = |ids: &[Id]| {
+        let place = |id: &Id| match graph.node(*id) {
+            Node::Variable(index) if *index < PLACES => 1 << index,
+            _ => 0,
+        };
+        ids.iter().map(place).fold(0_u8, |all, place| all | place)
     };
-    let places = nodes.iter().map(place).fold(0_u8, |all, place| all | place);
+    let places = places_in(&nodes);
     let mut below: Vec<Id> = Vec::new();
     let mut poles: Vec<Id> = Vec::new();
     for &id in &nodes {
@@ -60,7 +65,10 @@ pub fn is_definite(graph: &Graph, roots: &[Id], parameters: &[f64]) -> bool {
             continue;
         }
         match of(base).sign {
-            Sign::Positive => {}
+            // What is narrow along one axis is a wall, with the same numbers along the others as if there were none.
+            Sign::Positive if of(base).growth < STEEP_FALL => {}
+            Sign::Positive if places_in(&graph.reachable(&[base])).count_ones() > 1 => {}
+            Sign::Positive => return false,
             Sign::NotNegative(set) if set == places && places.count_ones() > 1 => poles.push(base),
             Sign::NotNegative(_) | Sign::Unknown => return false,
         }
@@ -236,6 +244,10 @@ mod tests {
             graph.power(all, -0.5)
         }));
         assert!(!is_told(|graph, [x, ..]| graph.power(x, -1.0)));
+        assert!(!is_told(|graph, [x, ..]| {
+            let square = squares(graph, &[x], 1e-6);
+            graph.power(square, -1.0)
+        }));
         assert!(!is_told(|graph, [x, y, _]| {
             let sum = graph.sum(1.0, &[(1.0, x), (1.0, y)]);
             graph.call(Function::Sqrt, sum)
