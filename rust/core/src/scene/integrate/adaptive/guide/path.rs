@@ -19,6 +19,14 @@ pub(super) struct Packed {
     pub(super) rows: usize,
 }
 
+impl Packed {
+    /// Whether there are fewer rows than bodies.
+    #[inline]
+    pub(super) fn are_several(self) -> bool {
+        self.bodies > 1
+    }
+}
+
 /// The time of all these lanes, if it is one.
 pub(super) fn one_time(t: &Lanes, lanes: Bits) -> Option<f64> {
     let first = t.0[lanes.0.trailing_zeros() as usize % WIDTH];
@@ -113,7 +121,11 @@ impl Path {
     /// Writes where the bodies are at the time `t` since the start of the step in these lanes, and then how they move if that is
     /// asked for: the derivative of the same polynomial.
     pub(super) fn at(&self, t: &Lanes, lanes: Bits, into: &mut [Lanes]) {
-        let one = self.packed.and_then(|_| one_time(t, lanes)).map(Lanes::splat);
+        let one = self
+            .packed
+            .filter(|packed| packed.are_several())
+            .and_then(|_| one_time(t, lanes))
+            .map(Lanes::splat);
         self.at_times((one.as_ref().unwrap_or(t), one.is_some()), into);
     }
 
@@ -124,7 +136,7 @@ impl Path {
     /// Where the bodies are at a stage of a step as long as this one, if `t` is the time of one in these lanes: most massless
     /// bodies take such a step, and all that do ask for the same places.
     pub(super) fn at_stage(&self, t: &Lanes, lanes: Bits) -> Option<&[Lanes]> {
-        let one = self.packed.is_some();
+        let one = self.packed.is_some_and(|packed| packed.are_several());
         let is_then = |time: &Lanes| (0..WIDTH).all(|lane| time.0[lane] == t.0[lane] || !lanes.lane(lane));
         // Packed, a stage is at one time.
         let asked = if one && !self.stages.is_empty() { Some(one_time(t, lanes)?) } else { None };
@@ -191,7 +203,8 @@ trait Source<V> {
     fn blocks(&self) -> usize;
     /// Where the number `i` is in each block.
     fn place(&self, i: usize) -> usize;
-    fn read(&self, block: usize, place: usize) -> V;
+    /// Of a block the numbers at these places, of which the first is that of the number `start`.
+    fn read<const G: usize>(&self, block: usize, start: usize, places: &[usize; G]) -> [V; G];
 }
 
 struct AsTheyLie<'a, V> {
@@ -209,8 +222,11 @@ impl<V: Copy> Source<V> for AsTheyLie<'_, V> {
         i
     }
     #[inline(always)]
-    fn read(&self, block: usize, place: usize) -> V {
-        self.blocks[block * self.len + place]
+    fn read<const G: usize>(&self, block: usize, start: usize, _: &[usize; G]) -> [V; G] {
+        let group = &self.blocks[block * self.len + start..][..G];
+        let mut read = [group[0]; G];
+        read.copy_from_slice(group);
+        read
     }
 }
 
@@ -231,8 +247,13 @@ impl<V: Real> Source<V> for Spread<'_> {
         self.places[i]
     }
     #[inline(always)]
-    fn read(&self, block: usize, place: usize) -> V {
-        V::splat(self.numbers[block * self.len + place])
+    fn read<const G: usize>(&self, block: usize, _: usize, places: &[usize; G]) -> [V; G] {
+        let block = &self.numbers[block * self.len..][..self.len];
+        let mut read = [V::zero(); G];
+        for g in 0..G {
+            read[g] = V::splat(block[places[g]]);
+        }
+        read
     }
 }
 
@@ -330,8 +351,9 @@ fn at<V: Real, S: Source<V>, const MOVING: bool, const G: usize>(
     for term in (0..from.blocks() - 2).rev() {
         let even = term % 2 == 0;
         let factor = if even { theta } else { rest };
+        let block = from.read(2 + term, start, &places);
         for g in 0..G {
-            let inner = from.read(2 + term, places[g]) + sums[g];
+            let inner = block[g] + sums[g];
             if MOVING {
                 // 1 − θ falls as θ grows.
                 slopes[g] = factor.multiply_add(slopes[g], if even { inner } else { -inner });
@@ -339,8 +361,9 @@ fn at<V: Real, S: Source<V>, const MOVING: bool, const G: usize>(
             sums[g] = factor * inner;
         }
     }
+    let (q, e) = (from.read(0, start, &places), from.read(1, start, &places));
     for g in 0..G {
-        let place = from.read(0, places[g]) + (from.read(1, places[g]) + sums[g]);
+        let place = q[g] + (e[g] + sums[g]);
         into.put(start + g, place, if MOVING { Some(slopes[g] * per_step) } else { None });
     }
 }

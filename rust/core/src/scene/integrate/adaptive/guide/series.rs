@@ -66,7 +66,7 @@ impl Shift<'_> {
         let orders = from.blocks.len() / len;
         self.into.blocks.resize(orders * numbers, Lanes::zero());
         self.into.rests.resize(numbers, Lanes::zero());
-        match (from.packed, one_time(t, lanes)) {
+        match (from.packed.filter(|packed| packed.are_several()), one_time(t, lanes)) {
             (Some(packed), Some(time)) => {
                 self.into.rows.clone_from(&from.blocks);
                 self.into.rests_of_rows.resize(len, Lanes::zero());
@@ -262,8 +262,9 @@ impl<V: Real> Division<'_, V> {
 
 /// Whether massive bodies in lanes, for one massless body after another, are quicker than massless bodies in lanes for one massive
 /// body after another.
-fn is_quicker(massless: usize, Packed { bodies, rows }: Packed) -> bool {
-    bodies > 1 && (1..=FewMassless::MOST).contains(&massless) && 2 * massless * rows <= bodies + 1
+fn is_quicker(massless: usize, packed: Packed) -> bool {
+    let Packed { bodies, rows } = packed;
+    packed.are_several() && (1..=FewMassless::MOST).contains(&massless) && 2 * massless * rows <= bodies + 1
 }
 
 impl Guided {
