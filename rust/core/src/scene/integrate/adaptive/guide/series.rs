@@ -260,7 +260,7 @@ impl<V: Real> Division<'_, V> {
     }
 }
 
-/// Whether massive bodies in lanes, for one massless body after another, are quicker than massless bodies in lanes for one massive
+/// Whether massive bodies in lanes, for one massless body after another, are quicker than massless ones in lanes for one massive
 /// body after another.
 fn is_quicker(massless: usize, packed: Packed) -> bool {
     let Packed { bodies, rows } = packed;
