@@ -96,6 +96,16 @@ def test_a_drive_as_a_formula_is_the_driven_force(t0: float) -> None:
         (lambda r, v, t: 1.0 / (r[0] ** 2 + 1e-6), "dop853"),
         (lambda r, v, t: r[0] * np.exp(-((t - 5.0) ** 2)), "dop853"),
         (lambda r, v, t: np.tanh(r[0]), "dop853"),
+        # Roots, quotients and logarithms of what vanishes nowhere, or at a pole alone.
+        (lambda r, v, t: 0.5 * np.log(r @ r + 0.04), "taylor"),
+        (lambda r, v, t: -1.0 / np.sqrt(r[0] ** 2 + r[1] ** 2 + (0.5 + np.sqrt(r[2] ** 2 + 0.01)) ** 2), "taylor"),
+        (lambda r, v, t: -1.0 / np.sqrt(r @ r), "taylor"),
+        # A disk without thickness, an absolute value, a cone, a pole on a plane, and roots of either sign.
+        (lambda r, v, t: -1.0 / np.sqrt(r[0] ** 2 + r[1] ** 2 + (0.5 + np.abs(r[2])) ** 2), "dop853"),
+        (lambda r, v, t: np.abs(r[0]) + r[1] ** 2, "dop853"),
+        (lambda r, v, t: np.sqrt(r @ r), "dop853"),
+        (lambda r, v, t: 1.0 / r[0] + r[1] ** 2, "dop853"),
+        (lambda r, v, t: np.sqrt(1.0 + r[0] + r[1]), "dop853"),
     ],
 )
 def test_auto_takes_series_where_they_tell_all(force: object, method: str) -> None:
@@ -103,6 +113,36 @@ def test_auto_takes_series_where_they_tell_all(force: object, method: str) -> No
     assert scene.plan(t=1.0).method == method
     # Beside forces without series none are taken.
     assert vv.Scene(ION, vv.ExpressionForce(potential=force), vv.QuadraticDrag(0.1)).plan(t=1.0).method == "dop853"
+
+
+def dipole(r: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
+    """A charge beside a magnetic dipole along z."""
+    square = r @ r
+    field = (3.0 * r[2] * r - np.array([0.0, 0.0, 1.0]) * square) / square**2.5
+    return np.array(
+        [v[1] * field[2] - v[2] * field[1], v[2] * field[0] - v[0] * field[2], v[0] * field[1] - v[1] * field[0]]
+    )
+
+
+def test_a_charge_beside_a_dipole_keeps_what_it_has_to() -> None:
+    """Its speed, and the angular momentum of its canonical momentum, x v_y - y v_x + ρ²/r³."""
+    body = vv.Particles([1.0], [[1.0, 0.0, 0.1]], [[0.0, 0.2, 0.1]])
+    out = vv.Scene(body, vv.ExpressionForce(force=dipole)).run(t=np.linspace(0.0, 100.0, 21))
+    assert out.plan.method == "taylor"
+    (x, y, z), v = out.position[:, 0].T, out.velocity[:, 0]
+    canonical = x * v[:, 1] - y * v[:, 0] + (x**2 + y**2) / (x**2 + y**2 + z**2) ** 1.5
+    # Some thousand steps, each held to 1e-12, of which the last coefficients leave a hundredth.
+    assert np.abs(np.linalg.norm(v, axis=1) / np.linalg.norm(v[0]) - 1.0).max() < 1e-12
+    assert np.abs(canonical / canonical[0] - 1.0).max() < 1e-12
+
+
+@pytest.mark.parametrize(("thickness", "method"), [(0.1, "taylor"), (0.0, "dop853")])
+def test_the_number_below_a_root_decides(thickness: float, method: str) -> None:
+    disk = vv.ExpressionForce(
+        potential=lambda r, v, t, b: -1.0 / np.sqrt(r[0] ** 2 + r[1] ** 2 + (0.5 + np.sqrt(r[2] ** 2 + b**2)) ** 2),
+        parameters={"b": thickness},
+    )
+    assert vv.Scene(ION, disk).plan(t=1.0).method == method
 
 
 @pytest.mark.parametrize("force", [(0, 0, lambda x, t: t), (1, 0, lambda x, t: x), (1, 0, lambda x, t: x**2 + t**3)])

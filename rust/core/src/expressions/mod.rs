@@ -7,6 +7,7 @@
 pub mod assembler;
 pub mod code;
 pub mod curve;
+pub mod definite;
 mod derivative;
 pub mod execute;
 pub mod function;

@@ -4,6 +4,7 @@
 //! knows the force on each massless body without any other.
 
 use super::ForceTerm;
+pub use super::gravity::series::few::FewMassless;
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes};
 use crate::ode::series::Jet;
@@ -40,6 +41,19 @@ pub struct MassiveSeries<'a> {
     pub rests: &'a [Lanes],
 }
 
+/// Those of packed massive bodies, eight in a row, for each of a few massless ones about its time and in its unit of it.
+#[derive(Clone, Copy, Debug)]
+pub struct MassiveRows<'a> {
+    /// The lanes of the massless bodies.
+    pub lanes: &'a [usize],
+    /// Rows of each component.
+    pub rows: usize,
+    /// As of [`MassiveSeries`], for one massless body after another.
+    pub places: &'a [Lanes],
+    /// Likewise.
+    pub rests: &'a [Lanes],
+}
+
 /// A force of massive bodies on a massless one in each lane.
 pub trait Following: Send {
     /// In these lanes the massive bodies have those masses, and this is the force on them.
@@ -65,6 +79,11 @@ pub trait Following: Send {
         a: &mut [Lanes],
         first: bool,
     ) -> Result<()>;
+
+    /// Who expands the motions of a few under this force alone, with the massive bodies in the lanes, if anybody does.
+    fn few(&mut self) -> Option<FewMassless<'_>> {
+        None
+    }
 
     /// Expands a motion under this force alone.
     ///

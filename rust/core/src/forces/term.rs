@@ -328,7 +328,7 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         None
     }
     /// Whether a Taylor series tells all of such a formula, wherever it is made.
-    fn is_entire(&self) -> bool {
+    fn is_told(&self) -> bool {
         false
     }
     /// What its kernel leaves out, and why.

@@ -10,7 +10,7 @@ mod visited;
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Both, Numbers, Sum, Sums, nest};
+use super::passes::series::{Both, Nested, Numbers, Sum, Sums, nest};
 use super::passes::series_errors::Vectors;
 use super::passes::step_by_series::{Allowed, Choice, Chosen, FAR, Shorter, Step};
 use super::series::Jet;
@@ -304,13 +304,8 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let (len, terms) = (self.jet.len, self.terms());
         let from = into.len();
         into.resize(from + len * terms, S::zero());
-        for number in 0..len {
-            let mut coefficients = self.monomials(&self.jet.q, (1, terms), number, h / self.jet.unit);
-            nest(&mut coefficients);
-            for (term, coefficient) in coefficients.into_iter().enumerate() {
-                into[from + term * len + number] = coefficient;
-            }
-        }
+        let into = &mut into[from..];
+        S::pass(Nested { blocks: &self.jet.q, times: [&self.h, &h, &self.jet.unit], len, into });
     }
 
     fn polynomial(&self, coordinate: usize, _: S, into: &mut Vec<[S; 2]>) {

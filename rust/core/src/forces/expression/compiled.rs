@@ -6,10 +6,10 @@ use crate::expressions::Code;
 use crate::expressions::assembler::compile;
 use crate::expressions::function::Function;
 use crate::expressions::graph::{Graph, Id, Node};
-use crate::expressions::narrow;
 use crate::expressions::program::Output;
 use crate::expressions::series::Series;
 use crate::expressions::table::{self, Parameters, Variables};
+use crate::expressions::{definite, narrow};
 use crate::narrow::{Equations, Features};
 use crate::ode::system::Needs;
 use std::sync::{Arc, OnceLock};
@@ -59,7 +59,7 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         parameters: parameters.to_vec(),
         needs,
         may_hide: narrow::may_hide(&graph, &force),
-        is_entire: narrow::is_entire(&graph, &force),
+        is_told: narrow::is_entire(&graph, &force) || definite::is_definite(&graph, &force, parameters),
         narrow: features(graph, &force, parameters.len())?.map(Arc::new),
         made_from: vec![],
         change: OnceLock::new(),

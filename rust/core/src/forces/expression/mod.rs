@@ -152,7 +152,7 @@ struct Expressions {
     needs: Needs,
     /// Whether there may be more in them than a step sees, and whether series see all.
     may_hide: bool,
-    is_entire: bool,
+    is_told: bool,
     /// What may be too narrow for a step, of accelerations: a further parameter is what they are of the components.
     narrow: Option<Arc<Features>>,
     /// What they were made from, but for the parameters.
@@ -351,8 +351,8 @@ impl ForceTerm for ExpressionForce {
     fn is_formula(&self) -> bool {
         true
     }
-    fn is_entire(&self) -> bool {
-        self.expressions.is_entire
+    fn is_told(&self) -> bool {
+        self.expressions.is_told
     }
     fn series_in_every_lane(&self) -> bool {
         true

@@ -5,7 +5,7 @@ use super::pair::squared_distance;
 use super::series::passive::{self, PullSeries};
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
-use crate::forces::following::{Following, Leaders, Massive, MassiveSeries};
+use crate::forces::following::{FewMassless, Following, Leaders, Massive, MassiveSeries};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
@@ -121,6 +121,11 @@ impl Following for Leading {
         let massive = passive::Massive { strength: &self.strength, places, rests };
         self.series.as_mut().ok_or_else(without_series)?.coefficient(massive, of, a, first);
         Ok(())
+    }
+
+    fn few(&mut self) -> Option<FewMassless<'_>> {
+        let Self { strength, series, .. } = self;
+        series.as_mut().map(|series| FewMassless { strength, series: series.few() })
     }
 
     fn expand(

@@ -11,6 +11,7 @@ use crate::forces::series::pairs::{Kept, ORDERS, Orders, Pairs, Whole};
 use crate::numerics::lanes::Lanes;
 
 mod each;
+pub mod few;
 mod pair;
 pub mod passive;
 mod ring;

@@ -85,8 +85,18 @@ impl<S: Real> Kept<S> {
         }
     }
 
+    /// The same room for bodies in so many rows.
+    pub(in crate::forces) fn lay_out(&mut self, rows: usize) {
+        self.shape.rows = rows;
+    }
+
+    /// How many registers there are.
+    pub(in crate::forces) fn registers(&self) -> usize {
+        self.inverse.len()
+    }
+
     /// Dimensions.
-    pub(super) fn components(&self) -> usize {
+    pub(in crate::forces) fn components(&self) -> usize {
         self.shape.components
     }
 

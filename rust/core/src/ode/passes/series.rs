@@ -211,6 +211,63 @@ fn product<V: Real>(a: V, b: V) -> (V, V) {
     (product, a.multiply_add(b, -product))
 }
 
+/// The nested terms, as of [`nest`], of all numbers, from coefficients of the time since an expansion.
+pub(in crate::ode) struct Nested<'a, S> {
+    /// Blocks of coefficients, from order 0 on, which is left out.
+    pub(in crate::ode) blocks: &'a [S],
+    /// The step that was tried, that of which they are to be, and the unit of the coefficients.
+    pub(in crate::ode) times: [&'a S; 3],
+    /// Numbers of a block.
+    pub(in crate::ode) len: usize,
+    /// Blocks of terms.
+    pub(in crate::ode) into: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for Nested<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let Self { blocks, times: [tried, h, unit], len, into } = self;
+        let (blocks, into, unit) = (V::view(blocks), V::view_mut(into), V::load(*unit));
+        let (ratio, mut power) = (V::load(*tried) / unit, V::load(*h) / unit);
+        for (into, block) in into.chunks_exact_mut(len).zip(blocks[len..].chunks_exact(len)) {
+            for (into, coefficient) in into.iter_mut().zip(block) {
+                *into = *coefficient * power;
+            }
+            power = power * ratio;
+        }
+        let mut start = 0;
+        while len - start >= 3 {
+            nest_numbers::<V, 3>(into, (len, start));
+            start += 3;
+        }
+        while len > start {
+            nest_numbers::<V, 1>(into, (len, start));
+            start += 1;
+        }
+    }
+}
+
+/// As [`nest`], of `G` numbers of blocks from one on.
+#[inline(always)]
+fn nest_numbers<V: Real, const G: usize>(blocks: &mut [V], (len, start): (usize, usize)) {
+    let terms = blocks.len() / len;
+    let mut first = 0;
+    while first + 1 < terms {
+        let mut sums = [V::zero(); G];
+        sums.copy_from_slice(&blocks[(terms - 1) * len + start..][..G]);
+        for index in (first..terms - 1).rev() {
+            let (before, after) = blocks[index * len + start..].split_at_mut(len);
+            for g in 0..G {
+                after[g] = -sums[g];
+                sums[g] = before[g] + sums[g];
+            }
+        }
+        blocks[first * len + start..][..G].copy_from_slice(&sums);
+        first += 2;
+    }
+}
+
 /// The nested terms `f` of `y(θ) = y + θ(f0 + (1-θ)(f1 + θ(f2 + …)))` from the coefficients of θ, θ², …, in place.
 pub(in crate::ode) fn nest<S: Real>(coefficients: &mut [S]) {
     for start in (0..coefficients.len()).step_by(2) {

@@ -31,6 +31,10 @@ const MOST_LINKS: usize = 7;
 /// Series see all of formulas that are polynomials and waves, too. There they are off by a thousandth, in a fifth (a Penning
 /// trap) to one and a half times the time (soft polynomials of a hundred products).
 ///
+/// So they do of formulas with roots, quotients and logarithms of what vanishes nowhere, or only at a pole
+/// ([`is_definite`](crate::expressions::definite::is_definite)): a third (a dipole's magnetic field) to nine tenths (a disk
+/// a thousandth as thick as it is wide) of the time, off by a hundredth to a thousandth.
+///
 /// Springs that have a length are stiff as a rule, and their series take a third to two thirds of the time of Verner's method
 /// at one tolerance: measured on pairs, rings and chains of up to 64, with and without fields beside. Copies of pairs and of
 /// small chains take 0.7 to 1 of it, of longer ones up to 1.5.
@@ -47,7 +51,7 @@ pub(super) fn first_choice(
     let formula = forces.iter().any(|force| force.is_formula());
     let series = registry::methods_for(false).find(|method| matches!(method.scheme, Scheme::Taylor(_)));
     let told = if formula {
-        forces.iter().all(|force| !force.is_formula() || force.is_entire())
+        forces.iter().all(|force| !force.is_formula() || force.is_told())
     } else {
         pull_in_fields(forces, active)
             || (!touching && (turns_linearly(forces) || is_held(forces, active, passive, groups)))

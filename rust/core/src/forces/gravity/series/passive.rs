@@ -1,5 +1,6 @@
 //! One massless body in each lane, along series of the massive ones.
 
+use super::few::FewPulls;
 use super::{Kept, Orders, Pairs, Whole};
 use crate::numerics::element::{Element, Pass, Shape, View};
 use crate::numerics::inverse_cube::InverseCube;
@@ -10,6 +11,7 @@ use crate::ode::series::Jet;
 pub struct PullSeries {
     kept: Kept<Lanes>,
     softening2: f64,
+    few: Option<Box<FewPulls>>,
 }
 
 /// Massive bodies by their coefficients, in the unit of time of those on whom they pull.
@@ -26,7 +28,14 @@ pub struct Massive<'a, S> {
 impl PullSeries {
     /// Of so many massive bodies in so many dimensions.
     pub fn new(massive: usize, components: usize, softening2: f64) -> Self {
-        Self { kept: Kept::new(Shape { rows: 1, components }, massive), softening2 }
+        Self { kept: Kept::new(Shape { rows: 1, components }, massive), softening2, few: None }
+    }
+
+    /// The pulls of as many bodies on a few.
+    pub fn few(&mut self) -> &mut FewPulls {
+        let (massive, softening2) = (self.kept.registers(), self.softening2);
+        let components = self.kept.components();
+        self.few.get_or_insert_with(|| Box::new(FewPulls::new(massive, components, softening2)))
     }
 
     /// As [`Series::coefficient`](crate::forces::series::Series::coefficient).
