@@ -290,8 +290,10 @@ def test_forces_with_and_without_formulas_add_up() -> None:
 
 
 def angled(k: float) -> vv.ExpressionForce:
-    """A harmonic force, and no more than nothing of an angle, which has no slope in the middle: so none is known."""
-    return vv.ExpressionForce(force=lambda r, v, t: (-k * r[0] + 1e-30 * np.arctan2(r[1], r[0]), -k * r[1], -k * r[2]))
+    """A harmonic force, and next to nothing of an angle: formulas with angles are compared with themselves."""
+    return vv.ExpressionForce(
+        force=lambda r, v, t: (-k * r[0] + 1e-30 * np.arctan2(r[1] - 7.0, r[0] - 7.0), -k * r[1], -k * r[2])
+    )
 
 
 @pytest.mark.parametrize("length", [2.0**-300, 2.0**200])

@@ -297,8 +297,8 @@ impl Pass<Lanes> for AddPairs<'_> {
         for c in 0..force.len() / rows {
             for i in c * rows + start..c * rows + start + bodies {
                 for j in i + 1..c * rows + start + bodies {
-                    force[i] = force[i] - lines[at];
-                    force[j] = force[j] + lines[at];
+                    force[i] -= lines[at];
+                    force[j] += lines[at];
                     at += 1;
                 }
             }

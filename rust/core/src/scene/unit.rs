@@ -12,7 +12,7 @@ mod size;
 mod turning;
 mod waiting;
 
-pub use forces::{Kernel, derivatives, dynamics, uncoupled};
+pub use forces::{Derivatives, Kernel, derivatives, dynamics, uncoupled};
 pub use turning::Turned;
 pub(super) use turning::assembled;
 

@@ -86,12 +86,11 @@ fn context<'a>(plan: &Plan, units: &[&Prepared], systems: &'a [System<'a>], thre
     }
 }
 
+/// How forces change along a direction, and those that do not know it, if there are any.
+pub type Derivatives = (Vec<Box<dyn Derivative<Lanes>>>, Option<Dynamics<Lanes>>);
+
 /// How the forces on `units` change along a direction, and the forces that do not know it, if there are any.
-pub fn derivatives(
-    plan: &Plan,
-    units: &[&Prepared],
-    threads: usize,
-) -> (Vec<Box<dyn Derivative<Lanes>>>, Option<Dynamics<Lanes>>) {
+pub fn derivatives(plan: &Plan, units: &[&Prepared], threads: usize) -> Derivatives {
     let systems = systems(plan, units);
     let mut context = context(plan, units, &systems, threads);
     let (mut known, mut others) = (Vec::new(), Vec::new());
