@@ -66,7 +66,7 @@ pub fn is_definite(graph: &Graph, roots: &[Id], parameters: &[f64]) -> bool {
         }
         match of(base).sign {
             // What is narrow along one axis is a wall, with the same numbers along the others as if there were none.
-            Sign::Positive if of(base).growth < STEEP_FALL => {}
+            Sign::Positive if fall(graph.node(id), of(base).growth) < STEEP_FALL => {}
             Sign::Positive if places_in(&graph.reachable(&[base])).count_ones() > 1 => {}
             Sign::Positive => return false,
             Sign::NotNegative(set) if set == places && places.count_ones() > 1 => poles.push(base),
@@ -83,6 +83,15 @@ pub fn is_definite(graph: &Graph, roots: &[Id], parameters: &[f64]) -> bool {
         && roots
             .iter()
             .all(|&root| of(root).growth <= STEEPEST && (!has_pole(root) || of(root).onset <= -1.0))
+}
+
+/// With which power of the places a node falls that divides by what grows with another.
+fn fall(node: &Node, growth: f64) -> f64 {
+    match node {
+        Node::Quotient(..) => growth,
+        Node::Power(_, exponent) => -number(*exponent) * growth,
+        _ => 0.0,
+    }
 }
 
 fn known(graph: &Graph, parameters: &[f64]) -> Vec<Known> {
