@@ -215,7 +215,8 @@ def test_the_file_of_version_1_loads() -> None:
     assert out.position.shape == (2, 3, 1)
     assert out.events.which.tolist() == [0, 0]
     assert out[1].system.parameters == {"g": 9.81, "l": 2.0, "m": 1.0}
-    assert np.array_equal(out.ensemble.run(out.t).position, out.position)
+    # By gauss16, whose states within steps were read otherwise: the same to roundings of angles of a third of a radian.
+    np.testing.assert_allclose(out.ensemble.run(out.t).position, out.position, rtol=0.0, atol=4e-16)
 
 
 def test_a_file_loads_without_sympy(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ use crate::expressions::graph::Dependence;
 use crate::expressions::precise::Precise;
 use crate::expressions::program::Output;
 use crate::expressions::{Graph, Id};
-use crate::numerics::angles::atan2;
+use crate::numerics::angles::{self, atan2};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::complete_first_kind;
 use crate::numerics::functions::precise::sin_cos;
@@ -138,6 +138,16 @@ fn half_of(cosine: DoubleDouble, sine: DoubleDouble, size: DoubleDouble) -> [Dou
     [c, if sine.high() < 0.0 { -s } else { s }]
 }
 
+/// Of an angle, which may have so many turns that no more digits are known than a number has.
+fn sine_and_cosine(angle: f64) -> (DoubleDouble, DoubleDouble) {
+    let (sine, cosine) = sin_cos(DoubleDouble::from(angle));
+    if sine.is_finite() {
+        return (sine, cosine);
+    }
+    let (sine, cosine) = angles::sin_cos(angle);
+    (DoubleDouble::from(sine), DoubleDouble::from(cosine))
+}
+
 impl PendulumFlow {
     /// From an angle and a rate, where these multiples of sine and cosine restore.
     fn new(start: [f64; 2], rate: DoubleDouble, [a, b]: [DoubleDouble; 2], scale: f64) -> Self {
@@ -165,7 +175,7 @@ impl PendulumFlow {
         if strength.high() == 0.0 {
             return flow;
         }
-        let (own_sine, own_cosine) = sin_cos(DoubleDouble::from(start[0]).scale(0.5));
+        let (own_sine, own_cosine) = sine_and_cosine(0.5 * start[0]);
         let [cosine, sine] = half_of(a, b, strength);
         let (sine, cosine) = (own_sine * cosine - own_cosine * sine, own_cosine * cosine + own_sine * sine);
         // Half a turn further is the same pendulum: below the highest point the cosine is dn, and positive.
@@ -176,7 +186,7 @@ impl PendulumFlow {
         let complement = (cosine - pace.abs()) * (cosine + pace.abs());
         let square = sine * sine + pace * pace;
         // At rest, at the lowest point or at the highest.
-        if square.high() == 0.0 || (complement.high() == 0.0 && pace.high() == 0.0) {
+        if pace.high() == 0.0 && (sine.high() == 0.0 || complement.high() == 0.0) {
             return flow;
         }
         if complement.high() > 0.0 {

@@ -11,6 +11,10 @@ use core::f64::consts::PI;
 const FURTHER: f64 = 4.0;
 /// Where V ends at a wall, ψ falls as √(R − b): how much the power of the outermost sample may be off.
 const SQUARE_ROOT: f64 = 0.05;
+/// Where ψ is not met to this part of its sine, as b has no more digits, dψ/db is that of the angle asked for …
+const TOLD: f64 = 1e-11;
+/// … by another so many times as far away.
+const AROUND: f64 = 16.0;
 /// An angle that stands for 0 where the cross section does not vanish there.
 const FORWARD: f64 = 1e-150;
 
@@ -275,9 +279,23 @@ impl Structure<'_> {
                 break;
             }
         }
-        let nearest = [low, high]
+        let mut nearest = [low, high]
             .into_iter()
             .fold(here, |best, other| if sign(&other).abs() < sign(&best).abs() { other } else { best });
+        let missed = sign(&nearest);
+        let sine = sin(if near { PI - target.abs() } else { target }).abs();
+        if missed.abs() > TOLD * sine {
+            let way = sine.max(AROUND * missed.abs()) / nearest.derivative.abs();
+            let (first, last) = (stretch[0].b, stretch[stretch.len() - 1].b);
+            let beside = if nearest.b - first > last - nearest.b { nearest.b - way } else { nearest.b + way };
+            let other = self.sample(beside.clamp(first, last), ticker)?;
+            // Beside a wall it is the inverse of dψ/db that goes evenly with ψ.
+            let [here, there] = [nearest, other].map(|sample| 1.0 / sample.derivative);
+            let inverse = here - missed * (there - here) / (sign(&other) - missed);
+            if inverse * here > 0.0 && inverse.is_finite() {
+                nearest.derivative = 1.0 / inverse;
+            }
+        }
         Ok(Some(nearest))
     }
 }
