@@ -117,7 +117,10 @@ def test_what_cannot_be_run_is_refused_by_name() -> None:
     words = "did you mean 'variational_midpoint'"
     assert argument(lambda: pendulum.run(1.0, method="variational_midpiont", dt=0.1), words) == "method"
     out = pendulum.run([0.0, 0.1, 0.2])
-    assert argument(lambda: pendulum.discrete_action(out), "as the path is a run of elliptic_functions; pass method") == "method"
+    assert (
+        argument(lambda: pendulum.discrete_action(out), "as the path is a run of elliptic_functions; pass method")
+        == "method"
+    )
     assert argument(lambda: pendulum.discrete_action(out, method="gauss4"), "expected one of variational") == "method"
     assert argument(lambda: pendulum.discrete_action(([0.0], [1.0])), "two times or more") == "path"
     assert argument(lambda: pendulum.discrete_action(([0.0, 1.0, 0.5], [1.0] * 3)), "all in order") == "path"

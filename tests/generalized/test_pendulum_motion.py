@@ -1,4 +1,4 @@
-"""The plane pendulum by elliptic functions: swinging, turning, at the border between, tilted, and however it is written."""
+"""The plane pendulum by elliptic functions: swinging, turning, at their border, tilted, and however it is written."""
 
 from __future__ import annotations
 

@@ -202,7 +202,8 @@ class Runs(States):
         Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3
         and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, section 1.5, parts
         2 and 3; constraints in part 3 there, and section VII.1 of the former. The matrix exponential: C. Moler &
-        C. Van Loan, SIAM Review 45 (2003) 3. Elliptic functions: NIST Digital Library of Mathematical Functions, 22.19(i).
+        C. Van Loan, SIAM Review 45 (2003) 3. Elliptic functions: NIST Digital Library of Mathematical Functions,
+        section 22.19(i).
 
         Examples
         --------
