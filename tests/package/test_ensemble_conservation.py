@@ -96,7 +96,7 @@ def test_generalized_coordinates() -> None:
 def test_stats_of_generalized_coordinates(tmp_path: Path) -> None:
     """As of scenes: the numbers of the run, of copies in total, also when loaded."""
     many = vv.systems.pendulum().ensemble(position=[[0.1], [3.0]])
-    out = many.run(t=10.0)
+    out = many.run(t=10.0, method="gauss16")
     each = [out[copy].stats for copy in range(2)]
     assert [one.steps for one in each] == out.steps.tolist()
     assert out.stats.steps == sum(one.steps for one in each)

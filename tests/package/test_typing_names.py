@@ -12,7 +12,7 @@ import sympy as sp
 
 import visviva as vv
 from visviva import typing
-from visviva.generalized._methods import CONSTRAINED, DISCRETE, GAUSS, LINEAR
+from visviva.generalized._methods import CONSTRAINED, DISCRETE, EXACT, GAUSS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +25,7 @@ def words(alias: Any) -> set[str]:
 
 def test_methods_in_generalized_coordinates() -> None:
     of_bodies = {method.name for method in (*vv.methods(), *vv.rigid.methods())}
-    assert words(typing.GeneralizedMethodName) == {"auto", LINEAR, *GAUSS, *DISCRETE, *CONSTRAINED, *of_bodies}
+    assert words(typing.GeneralizedMethodName) == {"auto", *EXACT, *GAUSS, *DISCRETE, *CONSTRAINED, *of_bodies}
     assert words(typing.DiscreteMethodName) == set(DISCRETE)
 
 

@@ -84,13 +84,13 @@ def warn_if_unresolved(
     # What is exact need not be looked at.
     if asked["method"] in EXACT:
         return
+    conserves, copies, (states, t) = system._structure["conserves_energy"], len(starts), lasts
+    if copies == 1 and conserves and _is_plainly_kept(system, asked, np.concatenate([starts, states]), t, values):
+        return
     done = _Done(system, asked, starts, lasts, values, threads)
-    if not system._structure["conserves_energy"]:
+    if not conserves:
         if asked["dt"] is not None:
             _look_at_steps(done)
-        return
-    copies, (states, t) = len(starts), lasts
-    if copies == 1 and _is_plainly_kept(done):
         return
     times = np.repeat([system.t0, t], copies)
     energies, sizes = _energies(system, times, np.concatenate([starts, states]), np.concatenate([values, values]))
@@ -192,11 +192,11 @@ def _off_after_steps(done: _Done, before: tuple[NDArray[np.float64], float], ste
     return errors
 
 
-def _is_plainly_kept(done: _Done) -> bool:
+def _is_plainly_kept(
+    system: GeneralizedSystem, asked: dict[str, Any], states: NDArray[np.float64], t: float, values: NDArray[np.float64]
+) -> bool:
     """Whether one run's energy is plainly what it was: arithmetic of numbers, a tenth of that of arrays of two."""
-    system, (state, t) = done.system, done.lasts
-    states = np.concatenate([done.starts, state])
-    columns = system._model.columns(np.array([system.t0, t]), states, done.values).tolist()
+    columns = system._model.columns(np.array([system.t0, t]), states, values).tolist()
     n, (first, second) = len(system.coordinates), states.tolist()
     energies, sizes = [], []
     for column, row in zip(columns, (first, second), strict=True):
@@ -204,7 +204,7 @@ def _is_plainly_kept(done: _Done) -> bool:
         energies.append(column[n])
         sizes.append(kinetic + abs(column[n] - kinetic))
     # Half of what is warned of, lest it hang on the order of a sum; what is no number is not below it.
-    return bool(abs(energies[1] - energies[0]) <= 0.5 * limit_of_energies(done.asked) * max(sizes))
+    return bool(abs(energies[1] - energies[0]) <= 0.5 * limit_of_energies(asked) * max(sizes))
 
 
 def _rounding(done: _Done, copy: int) -> float:

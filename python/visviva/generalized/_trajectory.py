@@ -16,6 +16,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._columns import exported
 from visviva.generalized._pictures import Drawn
 from visviva.generalized._saved import Saved
+from visviva.generalized._states import States
 from visviva.generalized._stats import GeneralizedStats
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
@@ -121,11 +122,11 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
     ) -> None:
-        from visviva.generalized._system import GeneralizedSystem
-
-        how = "the run of a Lagrangian or a Hamiltonian"
-        known = isinstance(system, GeneralizedSystem) and type(result) is type(asked) is dict
+        known = isinstance(system, States) and type(result) is type(asked) is dict
         if not (known and "t" in result and "outputs" in asked):
+            from visviva.generalized._system import GeneralizedSystem
+
+            how = "the run of a Lagrangian or a Hamiltonian"
             made_by(self, how, system=(system, GeneralizedSystem), result=(result, dict), asked=(asked, dict))
         lengths = result["lengths"]
         member = whole_number("member", member, 0, len(lengths) - 1)
@@ -197,7 +198,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
         Examples
         --------
         >>> import visviva as vv
-        >>> vv.systems.pendulum(position=[0.5]).run(t=1.0).stats.method
+        >>> vv.systems.double_pendulum().run(t=1.0).stats.method
         'gauss16'
         """
         return GeneralizedStats(self.steps, self.evaluations, self.longest_step, self.method)
@@ -235,7 +236,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
         >>> out.final.t0, bool((out.final.position == out.position[-1]).all())
         (1.0, True)
         >>> try:
-        ...     vv.systems.pendulum(position=[0.5]).run(t=1e4, max_steps=100)
+        ...     vv.systems.double_pendulum().run(t=1e4, max_steps=100)
         ... except vv.ConvergenceError as error:
         ...     error.trajectory.final.t0 > 10.0
         True

@@ -12,7 +12,7 @@ const FURTHER: f64 = 4.0;
 /// Where V ends at a wall, ψ falls as √(R − b): how much the power of the outermost sample may be off.
 const SQUARE_ROOT: f64 = 0.05;
 /// Where ψ is not met to this part of its sine, as b has no more digits, dψ/db is that of the angle asked for …
-const TOLD: f64 = 1e-11;
+const TOLD: f64 = f64::EPSILON;
 /// … by another so many times as far away.
 const AROUND: f64 = 16.0;
 /// An angle that stands for 0 where the cross section does not vanish there.
