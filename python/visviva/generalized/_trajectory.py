@@ -238,7 +238,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Drawn, Saved, Shown
         >>> try:
         ...     vv.systems.double_pendulum().run(t=1e4, max_steps=100)
         ... except vv.ConvergenceError as error:
-        ...     error.trajectory.final.t0 > 10.0
+        ...     error.trajectory.final.t0 > 1.0
         True
         """
         n = len(self.system.coordinates)
