@@ -81,6 +81,28 @@ def test_without_gravity_it_turns_evenly() -> None:
     assert free["theta"].tolist() == [5.0]
 
 
+def test_what_nothing_pulls_passes_its_events() -> None:
+    """Evenly, however often it turns."""
+    free = vv.systems.pendulum(position=[0.0], velocity=[3.0], g=0.0)
+    out = free.run(20.0, events=[vv.events.coordinate("theta", value=30.0), sympy.cos(THETA)])
+    assert out.events.which.tolist().count(0) == 1
+    # cos θ vanishes at odd quarters of a turn: 60/π times, rounded.
+    assert out.events.which.tolist().count(1) == round(60.0 / np.pi)
+
+
+def test_a_momentum_that_moves_nothing_grows() -> None:
+    """With no kinetic energy the angle stands, and the torque stays."""
+    a = sympy.Symbol("a")
+    still = vv.Hamiltonian(
+        a * MOMENTUM**2 / 2 - sympy.cos(THETA), q=[THETA], p=[MOMENTUM], position=[0.5], momentum=[0.25],
+        parameters={"a": 0.0},
+    )  # fmt: skip
+    out = still.run(t=[2.0])
+    assert out.method == "elliptic_functions"
+    assert out["theta"].tolist() == [0.5]
+    assert out.momentum[-1, 0] == pytest.approx(0.25 - 2.0 * np.sin(0.5), rel=1e-15, abs=0.0)
+
+
 @pytest.mark.parametrize(("cosine", "sine"), [(0.6, 0.8), (-0.6, 0.8), (-0.3, -1.1), (0.0, 1.0)])
 def test_a_tilted_one_is_another_by_its_angle(cosine: float, sine: float) -> None:
     tilt, strength = np.arctan2(sine, cosine), np.hypot(cosine, sine)

@@ -138,11 +138,21 @@ def test_a_charge_beside_a_dipole_keeps_what_it_has_to() -> None:
 
 @pytest.mark.parametrize(("thickness", "method"), [(0.1, "taylor"), (0.0, "dop853")])
 def test_the_number_below_a_root_decides(thickness: float, method: str) -> None:
-    disk = vv.ExpressionForce(
-        potential=lambda r, v, t, b: -1.0 / np.sqrt(r[0] ** 2 + r[1] ** 2 + (0.5 + np.sqrt(r[2] ** 2 + b**2)) ** 2),
-        parameters={"b": thickness},
+    def potential(r: np.ndarray, v: np.ndarray, t: float, b: float) -> np.ndarray:
+        return -1.0 / np.sqrt(r[0] ** 2 + r[1] ** 2 + (0.5 + np.sqrt(r[2] ** 2 + b**2)) ** 2)
+
+    assert (
+        vv.Scene(ION, vv.ExpressionForce(potential=lambda r, v, t: potential(r, v, t, thickness))).plan(t=1.0).method
+        == method
     )
-    assert vv.Scene(ION, disk).plan(t=1.0).method == method
+    # As a parameter it may be zero in some copy, and each is to have the method that it has alone.
+    disk = vv.ExpressionForce(potential=potential, parameters={"b": thickness})
+    assert vv.Scene(ION, disk).plan(t=1.0).method == "dop853"
+    b = [thickness, 0.2]
+    copies = vv.Scene(ION, disk).ensemble(position=[ION.position] * 2, parameters={disk: {"b": np.array(b)}}).run(3.0)
+    for index, own in enumerate(b):
+        alone = vv.ExpressionForce(potential=potential, parameters={"b": own})
+        np.testing.assert_array_equal(copies[index].position, vv.Scene(ION, alone).run(3.0).position)
 
 
 @pytest.mark.parametrize("force", [(0, 0, lambda x, t: t), (1, 0, lambda x, t: x), (1, 0, lambda x, t: x**2 + t**3)])

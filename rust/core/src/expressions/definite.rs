@@ -36,9 +36,10 @@ struct Known {
     onset: f64,
 }
 
-/// Whether a series tells all of these expressions wherever it is made, with these parameters.
-pub fn is_definite(graph: &Graph, roots: &[Id], parameters: &[f64]) -> bool {
-    let known = known(graph, parameters);
+/// Whether a series tells all of these expressions wherever it is made, whatever their parameters are: copies of a scene have
+/// parameters of their own, and each is to have the method that it has alone.
+pub fn is_definite(graph: &Graph, roots: &[Id]) -> bool {
+    let known = known(graph);
     let of = |id: Id| known[id as usize];
     let nodes = graph.reachable(roots);
     let places_in = |ids: &[Id]| {
@@ -94,13 +95,13 @@ fn fall(node: &Node, growth: f64) -> f64 {
     }
 }
 
-fn known(graph: &Graph, parameters: &[f64]) -> Vec<Known> {
+fn known(graph: &Graph) -> Vec<Known> {
     let mut known: Vec<Known> = Vec::with_capacity(graph.nodes().len());
     for node in graph.nodes() {
         let of = |id: &Id| known[*id as usize];
         let next = match node {
             Node::Constant(value) => constant(number(*value)),
-            Node::Parameter(index) => constant(parameters.get(*index as usize).copied().unwrap_or(f64::NAN)),
+            Node::Parameter(_) => Known { sign: Sign::Unknown, growth: 0.0, onset: 0.0 },
             Node::Variable(index) if *index < PLACES => {
                 Known { sign: Sign::Unknown, growth: 1.0, onset: 1.0 }
             }
@@ -190,7 +191,7 @@ mod tests {
         let places = [0, 1, 2].map(|index| graph.variable(index));
         let potential = make(&mut graph, places);
         let slopes = graph.gradient(potential, &places);
-        is_definite(&graph, &slopes, &[0.3])
+        is_definite(&graph, &slopes)
     }
 
     fn squares(graph: &mut Graph, places: &[Id], rest: f64) -> Id {
@@ -209,16 +210,24 @@ mod tests {
             let square = squares(graph, &places, 0.01);
             graph.call(Function::Ln, square)
         }));
-        assert!(is_told(|graph, [x, y, z]| {
-            let (square, thick) = (squares(graph, &[x, y], 0.0), graph.parameter(0));
-            let thick = graph.power(thick, 2.0);
-            let z = graph.power(z, 2.0);
+        let disk = |graph: &mut Graph, [x, y, z]: [Id; 3], thick: Id| {
+            let (square, z) = (squares(graph, &[x, y], 0.0), graph.power(z, 2.0));
             let height = graph.sum(0.0, &[(1.0, z), (1.0, thick)]);
             let height = graph.call(Function::Sqrt, height);
             let height = graph.sum(0.5, &[(1.0, height)]);
             let height = graph.power(height, 2.0);
             let all = graph.sum(0.0, &[(1.0, square), (1.0, height)]);
             graph.power(all, -0.5)
+        };
+        assert!(is_told(|graph, places| {
+            let thick = graph.constant(0.09);
+            disk(graph, places, thick)
+        }));
+        // A parameter may be zero in some copy.
+        assert!(!is_told(|graph, places| {
+            let thick = graph.parameter(0);
+            let thick = graph.power(thick, 2.0);
+            disk(graph, places, thick)
         }));
     }
 

@@ -95,7 +95,9 @@ fn look(
     let (mut node, mut from) = (0.0, t0);
     loop {
         ticker.tick()?;
-        let (elapsed, next) = (node * h, (node + 1.0) * h);
+        // What never turns is looked at once.
+        let elapsed = if node == 0.0 { 0.0 } else { node * h };
+        let next = (node + 1.0) * h;
         let last = next >= span;
         let length = if last { span - elapsed } else { h };
         let to = if last { end } else { t0 + sign * next };

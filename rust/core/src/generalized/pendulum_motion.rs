@@ -84,16 +84,20 @@ impl ExactMotion for PendulumMotion {
         let (&[torque, slope, factor], &[angle, second]) = (values.as_slice(), y0) else {
             return Err(Error::Internal("a pendulum has two numbers".to_owned()));
         };
-        let singular = || Error::invalid("parameters", "the mass matrix is singular for these");
         if !self.is_momentum && factor.high() == 0.0 {
-            return Err(singular());
+            return Err(Error::invalid("parameters", "the mass matrix is singular for these"));
         }
         let to_rate = |x: DoubleDouble| if self.is_momentum { x * factor } else { x / factor };
-        let rate =
-            if self.is_momentum { to_rate(DoubleDouble::from(second)) } else { DoubleDouble::from(second) };
+        let second_as_rate = DoubleDouble::from(second);
+        let rate = if self.is_momentum { to_rate(second_as_rate) } else { second_as_rate };
         let restoring = [-to_rate(slope), to_rate(torque)];
         let scale = if self.is_momentum { factor.to_f64() } else { 1.0 };
-        Ok(Box::new(PendulumFlow::new([angle, second], rate, restoring, scale)))
+        let mut flow = PendulumFlow::new([angle, second], rate, restoring, scale);
+        if self.is_momentum && factor.high() == 0.0 {
+            let (sine, cosine) = angles::sin_cos(angle);
+            flow.push = torque.to_f64().mul_add(cosine, slope.to_f64() * sine);
+        }
+        Ok(Box::new(flow))
     }
 }
 
@@ -115,6 +119,8 @@ enum Course {
 struct PendulumFlow {
     start: [f64; 2],
     rate: f64,
+    /// By what the second number grows where it moves nothing: a momentum that no velocity belongs to.
+    push: f64,
     sine: f64,
     cosine: f64,
     /// The rate of half of the angle, over the frequency.
@@ -162,6 +168,7 @@ impl PendulumFlow {
         let mut flow = Self {
             start,
             rate: rate.to_f64(),
+            push: 0.0,
             sine: 0.0,
             cosine: 1.0,
             pace: 0.0,
@@ -214,8 +221,8 @@ fn reduced(elapsed: DoubleDouble, period: DoubleDouble, whole: fn(f64) -> f64) -
 impl Flow for PendulumFlow {
     fn look(&self) -> f64 {
         // A radian of the fastest.
-        let argument = self.argument.to_f64();
-        if argument > 0.0 { 1.0 / argument } else { f64::INFINITY }
+        let fastest = Real::max(self.argument.to_f64(), self.rate.abs());
+        if fastest > 0.0 { 1.0 / fastest } else { f64::INFINITY }
     }
 
     fn after(&mut self, (high, low): (f64, f64)) -> Vec<f64> {
@@ -223,7 +230,7 @@ impl Flow for PendulumFlow {
         let [angle, second] = self.start;
         let mut turns = 0.0;
         let left = match self.course {
-            Course::Uniform => return vec![self.rate.mul_add(high, angle), second],
+            Course::Uniform => return vec![self.rate.mul_add(high, angle), self.push.mul_add(high, second)],
             Course::Asymptotic => elapsed,
             Course::Swinging(period) => reduced(elapsed, period, f64::round).1,
             Course::Turning(around) => {

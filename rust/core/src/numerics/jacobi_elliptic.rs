@@ -55,6 +55,7 @@ pub fn jacobi(u: f64, complement: f64) -> [f64; 3] {
 mod tests {
     use super::super::double_double::DoubleDouble;
     use super::super::elliptic::complete_first_kind;
+    use super::super::real::Real;
     use super::*;
 
     /// Arguments, complementary parameters, and values of mpmath with 60 digits.

@@ -59,7 +59,7 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         parameters: parameters.to_vec(),
         needs,
         may_hide: narrow::may_hide(&graph, &force),
-        is_told: narrow::is_entire(&graph, &force) || definite::is_definite(&graph, &force, parameters),
+        is_told: narrow::is_entire(&graph, &force) || definite::is_definite(&graph, &force),
         narrow: features(graph, &force, parameters.len())?.map(Arc::new),
         made_from: vec![],
         change: OnceLock::new(),
