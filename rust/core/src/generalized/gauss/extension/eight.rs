@@ -131,7 +131,7 @@ fn evaluate<V: Vector8 + Scalar>(
                 let rate = &mut of.rates[to][i][first + block];
                 let before = V::load(*rate);
                 // As of one trajectory: an end may have no rate.
-                let is_a_number = (found - found).less_equal(V::zero());
+                let is_a_number = found.abs().less_equal(V::splat(f64::MAX));
                 let found = V::select(is_a_number.and(active), found, before);
                 most = larger((found - before).abs(), most);
                 *rate = found.store();

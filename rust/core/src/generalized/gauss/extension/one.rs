@@ -87,7 +87,7 @@ fn find_body<V: Vector8 + Scalar>(
                 let rate = &mut of.rates[to][i];
                 let (found, before) = (V::load(registers[usize::from(outputs[i])]), V::load(*rate));
                 // An end may have no rate, as on a pole of the coordinates: there is that of the polynomial.
-                let found = V::select((found - found).less_equal(V::zero()), found, before);
+                let found = V::select(found.abs().less_equal(V::splat(f64::MAX)), found, before);
                 let scale = V::splat(Real::min(stages.measures[i], changes.limit) * (MOVED * length));
                 let moved = V::select(own, (found - before).abs(), V::zero());
                 change = larger(moved * scale, change);
