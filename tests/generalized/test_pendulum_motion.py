@@ -84,7 +84,7 @@ def test_without_gravity_it_turns_evenly() -> None:
 def test_what_nothing_pulls_passes_its_events() -> None:
     """Evenly, however often it turns."""
     free = vv.systems.pendulum(position=[0.0], velocity=[3.0], g=0.0)
-    out = free.run(20.0, events=[vv.events.coordinate("theta", value=30.0), sympy.cos(THETA)])
+    out = free.run(20.0, events=[vv.events.coordinate("theta", value=30.0), lambda q, v, t, **_: np.cos(q[0])])
     assert out.events.which.tolist().count(0) == 1
     # cos θ vanishes at odd quarters of a turn: 60/π times, rounded.
     assert out.events.which.tolist().count(1) == round(60.0 / np.pi)
