@@ -13,8 +13,9 @@ const FURTHER: f64 = 4.0;
 const SQUARE_ROOT: f64 = 0.05;
 /// Where ψ is not met to this part of its sine, as b has no more digits, dψ/db is that of the angle asked for …
 const TOLD: f64 = f64::EPSILON;
-/// … by another so many times as far away.
+/// … by another so many times as far away, and no nearer than this part of b: no farther, as a slope may vanish beside it.
 const AROUND: f64 = 16.0;
+const LEAST: f64 = 64.0 * f64::EPSILON;
 /// An angle that stands for 0 where the cross section does not vanish there.
 const FORWARD: f64 = 1e-150;
 
@@ -285,7 +286,7 @@ impl Structure<'_> {
         let missed = sign(&nearest);
         let sine = sin(if near { PI - target.abs() } else { target }).abs();
         if missed.abs() > TOLD * sine {
-            let way = sine.max(AROUND * missed.abs()) / nearest.derivative.abs();
+            let way = f64::max(AROUND * missed.abs() / nearest.derivative.abs(), LEAST * nearest.b);
             let (first, last) = (stretch[0].b, stretch[stretch.len() - 1].b);
             let beside = if nearest.b - first > last - nearest.b { nearest.b - way } else { nearest.b + way };
             let other = self.sample(beside.clamp(first, last), ticker)?;
